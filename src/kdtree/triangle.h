@@ -1,0 +1,81 @@
+// Ray meets triangle, watertight: no ray passes between two triangles that share an edge or a corner.
+//
+// After Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013: corners are
+// taken relative to the ray's origin and sheared so that the ray becomes the z axis; the triangle is
+// hit where its projection surrounds the origin. All triangles around a corner compute the same
+// rounded projection of it, so that they tile the plane exactly as their exact images would, provided
+// that the edge tests are exact for these rounded corners. They are: a product of two floats is exact
+// in double, and the sign of the difference of two doubles is exact. The float test before it only
+// discards: rounding is monotone, so a >= b implies round(a) >= round(b).
+//
+// The edge values in double also make t good for slivers seen edge-on: the hit computed lies within
+// rounding of the triangle, which the traversal's slack relies on.
+#pragma once
+#include "math/scalar.h"
+#include "vitral/vec.h"
+
+namespace vitral {
+
+// The axis along which the ray runs fastest is called z; x and y follow cyclically.
+static inline int dominant_axis(const Vec3& d) {
+  const float x = absolute(d.x), y = absolute(d.y), z = absolute(d.z);
+  return x > y ? (x > z ? 0 : 2) : (y > z ? 1 : 2);
+}
+
+template <class F>
+static inline Vec3T<F> permute(const Vec3T<F>& v, int z_axis) {
+  return z_axis == 0 ? Vec3T<F>{v.y, v.z, v.x} : z_axis == 1 ? Vec3T<F>{v.z, v.x, v.y} : v;
+}
+
+// What a ray keeps of its direction: permuted x/z, y/z and z.
+template <class F>
+struct Shear {
+  F x, y, z;
+};
+template <class F>
+static inline Shear<F> make_shear(const Vec3T<F>& permuted_direction) {
+  return {permuted_direction.x / permuted_direction.z, permuted_direction.y / permuted_direction.z,
+          permuted_direction.z};
+}
+
+// A corner, relative to the origin and permuted, seen along the ray.
+template <class F>
+static inline Vec3T<F> project(const Vec3T<F>& corner, const Shear<F>& shear) {
+  return {corner.x - shear.x * corner.z, corner.y - shear.y * corner.z, corner.z};
+}
+
+// False where the origin is surely outside the projected triangle.
+template <class F>
+static inline auto may_surround_origin(const Vec3T<F>& a, const Vec3T<F>& b, const Vec3T<F>& c) {
+  const F u0 = c.x * b.y, u1 = c.y * b.x;
+  const F v0 = a.x * c.y, v1 = a.y * c.x;
+  const F w0 = b.x * a.y, w1 = b.y * a.x;
+  return either(both(both(u0 >= u1, v0 >= v1), w0 >= w1), both(both(u0 <= u1, v0 <= v1), w0 <= w1));
+}
+
+template <class F, class M>
+struct TriangleHit {
+  M hit;
+  F t, u, v;
+};
+
+// The exact test and, where it hits, t and the barycentrics: u belongs to corner b, v to c.
+template <class F>
+static inline auto surround_origin(const Vec3T<F>& a, const Vec3T<F>& b, const Vec3T<F>& c,
+                                   const Shear<F>& shear) {
+  const auto ax = widen(a.x), ay = widen(a.y), bx = widen(b.x), by = widen(b.y), cx = widen(c.x), cy = widen(c.y);
+  using D = decltype(widen(a.x));
+  const D u = cx * by - cy * bx;
+  const D v = ax * cy - ay * cx;
+  const D w = bx * ay - by * ax;
+  const D det = (u + v) + w;
+  const D zero = D(0.0);
+  const auto inside = either(both(both(u >= zero, v >= zero), both(w >= zero, det > zero)),
+                             both(both(u <= zero, v <= zero), both(w <= zero, det < zero)));
+  const D inverse = D(1.0) / select(inside, det, D(1.0));
+  const D z = (u * widen(a.z) + v * widen(b.z)) + w * widen(c.z);
+  using M = decltype(either(inside, inside));
+  return TriangleHit<F, M>{inside, narrow(z * inverse / widen(shear.z)), narrow(v * inverse), narrow(w * inverse)};
+}
+
+}  // namespace vitral
