@@ -3,6 +3,7 @@
 // How to read this folder: this file (the layout), walk.cpp (one ray through the tree, the text that
 // explains traversal), triangle.h (ray meets triangle), sah.h and build.cpp (where the planes go).
 #pragma once
+#include "math/scalar.h"
 #include "vitral/box.h"
 #include "vitral/ray.h"
 #include "vitral/scene.h"
@@ -84,8 +85,23 @@ static inline F safe_reciprocal(const F& d) {
   return F(1.0f) / copy_sign(greatest(absolute(d), least_d), d);
 }
 
+static inline float largest_component(const Vec3& v) {
+  return greatest(absolute(v.x), greatest(absolute(v.y), absolute(v.z)));
+}
+
+// Rays that are not finite, start beyond 2^60, or whose direction has no usable length hit nothing.
+// The comparisons are false for NaN.
+static inline bool is_traceable(const Vec3& origin, const Vec3& direction) {
+  const float o = (absolute(origin.x) + absolute(origin.y)) + absolute(origin.z);
+  const float d = (absolute(direction.x) + absolute(direction.y)) + absolute(direction.z);
+  return o < 1.152921504606847e18f && d > 2.3283064365386963e-10f && d < 4294967296.0f;
+}
+
 // One ray, one lane at a time. The text to read first, and the reference for the packets.
 Hit walk_closest(const KdView& tree, const Ray& ray);
 bool walk_any(const KdView& tree, const Ray& ray, GlassRule glass);
+
+// The same answer from testing all triangles [0, triangles): what the tree is measured against.
+Hit brute_force_closest(const KdView& tree, uint32_t triangles, const Ray& ray, GlassRule glass);
 
 }  // namespace vitral

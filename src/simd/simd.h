@@ -59,25 +59,25 @@ struct Float {
   FloatVector v;
   Float() = default;
   Float(FloatVector x) : v(x) {}
-  Float(float x) : v(x - FloatVector{}) {}
+  explicit Float(float x) : v(x - FloatVector{}) {}
 };
 struct Double {
   DoubleVector lo, hi;
   Double() = default;
   Double(DoubleVector l, DoubleVector h) : lo(l), hi(h) {}
-  Double(double x) : lo(x - DoubleVector{}), hi(x - DoubleVector{}) {}
+  explicit Double(double x) : lo(x - DoubleVector{}), hi(x - DoubleVector{}) {}
 };
 struct Int {
   IntVector v;
   Int() = default;
   Int(IntVector x) : v(x) {}
-  Int(int32_t x) : v(x - IntVector{}) {}
+  explicit Int(int32_t x) : v(x - IntVector{}) {}
 };
 struct Uint {
   UintVector v;
   Uint() = default;
   Uint(UintVector x) : v(x) {}
-  Uint(uint32_t x) : v(x - UintVector{}) {}
+  explicit Uint(uint32_t x) : v(x - UintVector{}) {}
 };
 
 // --- masks: one bit a lane on AVX-512, all ones or all zeros in a lane elsewhere ----------------
@@ -230,7 +230,7 @@ static inline Int operator>>(Int a, int n) { return a.v >> n; }    // arithmetic
 // a < b ? a : b and a > b ? a : b: what the x86 instruction does, NaN included.
 static inline Float least(Float a, Float b) {
 #if LANES == 16
-  return FloatVector(_mm512_min_ps(__m512(a.v), __m512(b.v)));
+  return FloatVector(_mm512_maskz_min_ps(0xffff, __m512(a.v), __m512(b.v)));
 #elif LANES == 8
   return FloatVector(_mm256_min_ps(__m256(a.v), __m256(b.v)));
 #else
@@ -239,7 +239,7 @@ static inline Float least(Float a, Float b) {
 }
 static inline Float greatest(Float a, Float b) {
 #if LANES == 16
-  return FloatVector(_mm512_max_ps(__m512(a.v), __m512(b.v)));
+  return FloatVector(_mm512_maskz_max_ps(0xffff, __m512(a.v), __m512(b.v)));
 #elif LANES == 8
   return FloatVector(_mm256_max_ps(__m256(a.v), __m256(b.v)));
 #else
