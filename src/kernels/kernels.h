@@ -2,8 +2,10 @@
 #pragma once
 #include "kdtree/kdtree.h"
 #include "kernels/packet.h"
+#include "kernels/points.h"
 #include "math/pinhole.h"
 #include "raster/raster.h"
+#include "simd/isa.h"
 
 #include <cstdint>
 
@@ -21,6 +23,21 @@ struct Kernels {
 
   // The live rays that meet anything in (tmin, tmax).
   uint64_t (*trace_any)(const KdView& tree, const RayPacket& rays, GlassRule glass);
+
+  // One ray from every live point that faces the light to the light; sets rays.live.
+  void (*shadow_rays)(const Light& light, const PointPacket& points, float offset, RayPacket& rays);
+
+  // How many of the strata * strata ambient rays of each live point meet nothing opaque.
+  void (*ambient_occlusion)(const KdView& tree, const PointPacket& points, const AmbientSettings& settings,
+                            uint32_t* free_rays);
 };
+
+// The table of every instruction set that was built.
+#define VITRAL_DECLARE_TABLE(isa) \
+  namespace isa {                 \
+  extern const Kernels kTable;    \
+  }
+VITRAL_FOR_EACH_ISA(VITRAL_DECLARE_TABLE)
+#undef VITRAL_DECLARE_TABLE
 
 }  // namespace vitral

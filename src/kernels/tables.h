@@ -8,6 +8,9 @@ namespace VITRAL_ISA {
 void primary_rays(const Pinhole& camera, int x, int y, RayPacket& rays);
 void trace_closest(const KdView& tree, const RayPacket& rays, HitPacket& hits);
 uint64_t trace_any(const KdView& tree, const RayPacket& rays, GlassRule glass);
+void shadow_rays(const Light& light, const PointPacket& points, float offset, RayPacket& rays);
+void ambient_occlusion(const KdView& tree, const PointPacket& points, const AmbientSettings& settings,
+                       uint32_t* free_rays);
 
 }  // namespace VITRAL_ISA
 }  // namespace vitral

@@ -1,0 +1,25 @@
+// What the secondary passes need to know of 64 surface points.
+#pragma once
+#include "kernels/packet.h"
+
+namespace vitral {
+
+struct alignas(64) PointPacket {
+  float px[kPacketSize], py[kPacketSize], pz[kPacketSize];  // position
+  float gx[kPacketSize], gy[kPacketSize], gz[kPacketSize];  // geometric normal, unit, turned to the viewer
+  float nx[kPacketSize], ny[kPacketSize], nz[kPacketSize];  // shading normal, unit, turned to the viewer
+  uint32_t key[kPacketSize];                                // seeds the point's random numbers
+  uint64_t live = 0;
+};
+
+// A secondary ray starts this far off the surface along the geometric normal: well beyond the error
+// of a position computed from corners no larger than `magnitude` (about 2^-22 of it).
+static inline float ray_offset(float magnitude) { return magnitude * (1.0f / 262144.0f); }
+
+struct AmbientSettings {
+  int strata;      // n of n x n samples
+  float distance;  // rays end here
+  float offset;    // ray_offset()
+};
+
+}  // namespace vitral

@@ -1,0 +1,16 @@
+// The table of this instruction set.
+#include "kernels/tables.h"
+#include "simd/simd.h"
+
+#define VITRAL_TEXT(x) #x
+#define VITRAL_NAME(x) VITRAL_TEXT(x)
+
+namespace vitral {
+namespace VITRAL_ISA {
+
+const Kernels kTable = {
+    VITRAL_NAME(VITRAL_ISA), kLanes, primary_rays, trace_closest, trace_any, shadow_rays, ambient_occlusion,
+};
+
+}  // namespace VITRAL_ISA
+}  // namespace vitral

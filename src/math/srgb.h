@@ -1,0 +1,52 @@
+// The sRGB transfer curve (IEC 61966-2-1), by tables made at compile time from square roots' cousin,
+// the fifth root: x^2.4 = x^2 * (x^2)^(1/5).
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace vitral {
+
+// Newton's iteration for the fifth root of x in (0, 1].
+constexpr double fifth_root(double x) {
+  double r = 1;
+  for (int i = 0; i < 200; ++i) {
+    const double next = (4 * r + x / (r * r * r * r)) / 5;
+    if (next >= r) break;
+    r = next;
+  }
+  return r;
+}
+
+// Encoded value in [0, 1] to linear.
+constexpr double srgb_to_linear(double s) {
+  if (s <= 0.04045) return s / 12.92;
+  const double y = (s + 0.055) / 1.055;
+  return y * y * fifth_root(y * y);
+}
+
+// Linear value of each of the 256 codes.
+inline constexpr std::array<float, 256> kLinearOfSrgb = [] {
+  std::array<float, 256> table{};
+  for (size_t i = 0; i < 256; ++i) table[i] = static_cast<float>(srgb_to_linear(static_cast<double>(i) / 255));
+  return table;
+}();
+
+// Code i + 1 begins at this linear value, half way (in code) between its neighbours.
+inline constexpr std::array<float, 255> kSrgbThresholds = [] {
+  std::array<float, 255> table{};
+  for (size_t i = 0; i < 255; ++i) table[i] = static_cast<float>(srgb_to_linear((static_cast<double>(i) + 0.5) / 255));
+  return table;
+}();
+
+// The code of a linear value: the number of thresholds at or below it. Values outside [0, 1] and NaN
+// are clamped (NaN to 0).
+static inline uint8_t linear_to_srgb8(float x) {
+  size_t low = 0;
+  for (size_t step = 128; step != 0; step /= 2) {
+    if (low + step <= 255 && x >= kSrgbThresholds[low + step - 1]) low += step;
+  }
+  return static_cast<uint8_t>(low);
+}
+
+}  // namespace vitral

@@ -1,0 +1,78 @@
+#include "render/accelerator.h"
+
+#include "render/texture.h"
+#include "vitral/error.h"
+
+#include <algorithm>
+
+namespace vitral {
+namespace {
+
+bool cut_out_is_there(const void* scene_pointer, uint32_t triangle, float u, float v) {
+  const Scene& scene = *static_cast<const Scene*>(scene_pointer);
+  const Material& m = scene.materials[scene.mesh.triangle_material[triangle]];
+  const Texture& map = scene.textures[static_cast<size_t>(m.opacity_map)];
+  return sample_alpha(map, texcoord_at(scene.mesh, triangle, u, v)) >= 0.5f;
+}
+
+}  // namespace
+
+CutOuts make_cut_outs(const Scene& scene) { return {cut_out_is_there, &scene}; }
+
+Vec2 texcoord_at(const Mesh& mesh, uint32_t triangle, float u, float v) {
+  if (mesh.triangle_texcoords.empty()) return {0, 0};
+  Vec2 corner[3];
+  for (size_t k = 0; k < 3; ++k) {
+    const uint32_t i = mesh.triangle_texcoords[triangle][k];
+    corner[k] = i == kNoIndex ? Vec2{0, 0} : mesh.texcoords[i];
+  }
+  const float w = (1 - u) - v;
+  return {(corner[0].x * w + corner[1].x * u) + corner[2].x * v, (corner[0].y * w + corner[1].y * u) + corner[2].y * v};
+}
+
+void gather_triangles(const Scene& scene, ThreadPool& pool, std::vector<KdTriangle>& triangles) {
+  const Mesh& mesh = scene.mesh;
+  std::vector<uint32_t> flags(scene.materials.size());
+  for (size_t m = 0; m < flags.size(); ++m) {
+    flags[m] = (is_glass(scene.materials[m]) ? kGlassTriangle : 0u) |
+               (scene.materials[m].opacity_map != kNoTexture ? kCutOutTriangle : 0u);
+  }
+  triangles.resize(mesh.triangles.size());
+  constexpr size_t kChunk = 16384;
+  pool.parallel_for((triangles.size() + kChunk - 1) / kChunk, [&](size_t chunk, size_t) {
+    const size_t end = std::min(triangles.size(), (chunk + 1) * kChunk);
+    for (size_t i = chunk * kChunk; i < end; ++i) {
+      for (size_t k = 0; k < 3; ++k) {
+        const Vec3& p = mesh.positions[mesh.triangles[i][k]];
+        triangles[i].corner[k][0] = p.x;
+        triangles[i].corner[k][1] = p.y;
+        triangles[i].corner[k][2] = p.z;
+      }
+      triangles[i].flags = flags[mesh.triangle_material[i]];
+    }
+  });
+}
+
+void build_accelerator(const Scene& scene, ThreadPool& pool, const Control& control, Accelerator& a) {
+  gather_triangles(scene, pool, a.triangles);
+  std::vector<uint32_t> all(a.triangles.size()), glass;
+  for (uint32_t i = 0; i < all.size(); ++i) {
+    all[i] = i;
+    if (a.triangles[i].flags & kGlassTriangle) glass.push_back(i);
+  }
+  const Executor executor = [&](size_t count, const std::function<void(size_t)>& body) {
+    pool.parallel_for(count, [&](size_t i, size_t) {
+      if (control.stop.load(std::memory_order_relaxed)) throw Interrupted();
+      body(i);
+    });
+  };
+  const BuildSettings settings;
+  a.all = build_kdtree(a.triangles, all, settings, executor);
+  a.glass = build_kdtree(a.triangles, glass, settings, executor);
+  a.has_glass = !glass.empty();
+  const CutOuts cut_outs = make_cut_outs(scene);
+  a.view = make_view(a.all, a.triangles, cut_outs);
+  a.glass_view = make_view(a.glass, a.triangles, cut_outs);
+}
+
+}  // namespace vitral

@@ -1,0 +1,115 @@
+// What the passes of one frame share, and what each worker keeps to itself.
+#pragma once
+#include "kernels/kernels.h"
+#include "render/accelerator.h"
+#include "render/surface.h"
+#include "vitral/render.h"
+
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <vector>
+
+namespace vitral {
+
+// Read-only while tiles are rendered.
+struct FrameContext {
+  const Scene& scene;
+  const Settings& settings;
+  const Accelerator& accelerator;
+  const Kernels& kernels;
+  Pinhole camera;
+  float offset;                         // ray_offset() of this scene and camera
+  float least_importance;               // settings.min_importance, at least 1/4096: what a surface sends
+                                        // on weighs no more than what came, so no pixel has more paths
+  int ao_strata;                        // n of n x n samples
+  std::vector<float> ao_of_free_rays;   // (k / N)^exponent for k = 0..N
+};
+
+enum class Pass { raster, shadows, reflection, refraction, ao, shade, resolve };
+inline constexpr size_t kPasses = 7;
+inline constexpr std::array<const char*, kPasses> kPassNames = {"raster",           "shadows", "reflection", "refraction",
+                                                                "ambient occlusion", "shade",   "resolve"};
+
+struct PassTally {
+  std::array<double, kPasses> seconds{};
+  std::array<uint64_t, kPasses> rays{};
+};
+
+// Adds the time from its making to its end to a pass.
+class PassTimer {
+ public:
+  PassTimer(PassTally& tally, Pass pass)
+      : seconds_(tally.seconds[static_cast<size_t>(pass)]), start_(std::chrono::steady_clock::now()) {}
+  ~PassTimer() { seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+  PassTimer(const PassTimer&) = delete;
+  PassTimer& operator=(const PassTimer&) = delete;
+
+ private:
+  double& seconds_;
+  std::chrono::steady_clock::time_point start_;
+};
+
+inline void count_rays(PassTally& tally, Pass pass, uint64_t lanes) {
+  tally.rays[static_cast<size_t>(pass)] += static_cast<uint64_t>(__builtin_popcountll(lanes));
+}
+
+inline Vec3 get(const float* x, const float* y, const float* z, int lane) { return {x[lane], y[lane], z[lane]}; }
+
+// Colours of 64 points.
+struct ColorPacket {
+  Vec3 color[kPacketSize];
+};
+
+// What light and its absence came to at 64 points, besides the colour.
+struct LightDetail {
+  float shadow[kPacketSize];  // luminance of the first light's visibility: 1 lit, 0 blocked
+  float ao[kPacketSize];      // 0..1
+};
+
+// primary.cpp: what the camera sees in the 8x8 block with its corner at pixel (x, y): rays through
+// the pixel centres, and their hits, found by tracing.
+void trace_primary(const FrameContext& frame, int x, int y, uint64_t lanes, PassTally& tally, RayPacket& rays, HitPacket& hits);
+
+// resolve.cpp: encodes linear colours; counts and paints red those that are not finite.
+Rgb8 encode_pixel(Vec3& color, uint64_t& not_finite);
+
+// shadow.cpp: how much of the light arrives at each point, per colour channel: 1 lit (or facing
+// away), 0 blocked, between for glass.
+void light_visibility(const FrameContext& frame, const Light& light, const PointPacket& points, PassTally& tally,
+                      ColorPacket& visibility);
+
+// ambient.cpp: (free/N)^exponent of each live point.
+void ambient_visibility(const FrameContext& frame, const PointPacket& points, PassTally& tally, float* visibility);
+
+// direct.cpp: the light that the live points send to their viewers by themselves; reflection and
+// refraction come on top.
+void light_surfaces(const FrameContext& frame, const SurfacePacket& surfaces, PassTally& tally, ColorPacket& out,
+                    LightDetail& detail);
+
+// A secondary ray on its way, and what its light will be multiplied with.
+enum class PathKind : uint8_t { reflection, refraction };
+struct Path {
+  Vec3 origin, direction, weight;
+  uint32_t key;    // seeds its random numbers
+  uint16_t pixel;  // in the tile
+  uint8_t depth;   // 1: spawned at the camera's hit
+  PathKind kind;
+  PathKind root;   // of the first generation
+};
+
+// glass.cpp: the reflected and refracted rays that start at a surface. Lane i belongs to parents[i].
+void spawn_paths(const FrameContext& frame, const SurfacePacket& surfaces, const Path* parents, std::vector<Path>& out);
+
+// glass.cpp: follows paths until none is left; calls nothing back, adds weight * light to the pixels.
+struct PathSums {
+  Vec3* pixels;      // of the tile; reflection and refraction together
+  Vec3* reflection;  // the part whose first ray was a reflection; may be null
+  Vec3* refraction;  // may be null
+};
+struct PathScratch {
+  std::vector<Path> current, next, sorted;
+};
+void trace_paths(const FrameContext& frame, PathScratch& scratch, PassTally& tally, const PathSums& sums);
+
+}  // namespace vitral

@@ -1,0 +1,165 @@
+// Mirrors and glass: the recursion of Whitted, "An improved illumination model for shaded display",
+// 1980, unrolled into generations. All paths of a generation in a tile are sorted by kind and by the
+// signs of their directions, packed 64 at a time, traced, lit like any other surface, and spawn the
+// next generation. So packets stay full although paths end at different depths.
+#include "math/fresnel.h"
+#include "math/random.h"
+#include "render/frame.h"
+
+namespace vitral {
+namespace {
+
+// The light that a surface sends on, split by direction.
+struct Split {
+  Vec3 reflected{0, 0, 0}, refracted{0, 0, 0};  // weights
+  float eta = 1;                                // for the refracted direction; 1: straight on
+  float cos_i = 1;
+};
+
+Split split_light(const Material& m, const Settings& settings, float cos_i, bool back) {
+  Split s;
+  s.cos_i = cos_i;
+  const Effects& on = settings.effects;
+  switch (m.optics) {
+    case Optics::opaque: break;
+    case Optics::mirror:
+      if (on.reflection) s.reflected = m.specular;
+      break;
+    case Optics::polished:
+      if (on.reflection) s.reflected = m.specular * fresnel(settings.fresnel, cos_i, 1 / m.index);
+      break;
+    case Optics::dissolve:
+      if (on.refraction) s.refracted = Vec3{1, 1, 1} * (1 - m.opacity);
+      break;
+    case Optics::solid:
+    case Optics::thin: {
+      const bool leaving = back && m.optics == Optics::solid;
+      s.eta = leaving ? m.index : 1 / m.index;
+      // Light that is totally reflected inside glass belongs to the refraction that brought it there.
+      const bool total = refracted_cosine_squared(cos_i, s.eta) <= 0;
+      const float f = total ? 1.0f : fresnel(settings.fresnel, cos_i, s.eta);
+      if (on.reflection || (total && on.refraction)) s.reflected = Vec3{1, 1, 1} * f;
+      if (on.refraction) s.refracted = m.transmission * (1 - f);
+      break;
+    }
+  }
+  return s;
+}
+
+Path child_of(const Path& parent, PathKind kind, const Vec3& origin, const Vec3& direction, const Vec3& weight) {
+  Path p = parent;
+  p.origin = origin;
+  p.direction = direction;
+  p.weight = parent.weight * weight;
+  p.kind = kind;
+  p.root = parent.depth == 0 ? kind : parent.root;
+  p.key = branch_key(parent.key, kind == PathKind::reflection ? 1 : 2);
+  ++p.depth;
+  return p;
+}
+
+void spawn_at(const FrameContext& frame, const SurfacePacket& s, int lane, const Path& parent, std::vector<Path>& out) {
+  const Material& m = frame.scene.materials[s.material[lane]];
+  const Vec3 position = get(s.points.px, s.points.py, s.points.pz, lane);
+  const Vec3 geometric = get(s.points.gx, s.points.gy, s.points.gz, lane);
+  const Vec3 incoming = -get(s.vx, s.vy, s.vz, lane);
+  // A bent normal that faces away from the viewer cannot say how light bends.
+  Vec3 n = get(s.points.nx, s.points.ny, s.points.nz, lane);
+  if (!(dot(n, incoming) < -1e-4f)) n = geometric;
+  const float cos_i = least(greatest(-dot(n, incoming), 0.0f), 1.0f);
+  const Split split = split_light(m, frame.settings, cos_i, s.back >> lane & 1);
+
+  if (luminance(parent.weight * split.reflected) >= frame.least_importance) {
+    Vec3 d = reflect(incoming, n);
+    if (!(dot(d, geometric) > 0)) d = reflect(d, geometric);
+    out.push_back(child_of(parent, PathKind::reflection, position + geometric * frame.offset, normalize(d), split.reflected));
+  }
+  if (luminance(parent.weight * split.refracted) >= frame.least_importance) {
+    Vec3 d = incoming;
+    if (split.eta != 1) {
+      const float cos_t = square_root(greatest(refracted_cosine_squared(cos_i, split.eta), 0.0f));
+      d = refract(incoming, n, split.eta, cos_i, cos_t);
+      if (!(dot(d, geometric) < 0)) d = reflect(d, geometric);
+    }
+    out.push_back(child_of(parent, PathKind::refraction, position - geometric * frame.offset, normalize(d), split.refracted));
+  }
+}
+
+// Counting sort: reflections before refractions, each by octant; the order within is kept, so that
+// what a pixel adds up, and in which order, depends on the pixel alone.
+void sort_paths(const std::vector<Path>& paths, std::vector<Path>& sorted) {
+  const auto bucket = [](const Path& p) {
+    return (p.kind == PathKind::refraction ? 8u : 0u) + (p.direction.x < 0 ? 1u : 0u) + (p.direction.y < 0 ? 2u : 0u) +
+           (p.direction.z < 0 ? 4u : 0u);
+  };
+  std::array<size_t, 17> first{};
+  for (const Path& p : paths) ++first[bucket(p) + 1];
+  for (size_t i = 1; i < first.size(); ++i) first[i] += first[i - 1];
+  sorted.resize(paths.size());
+  for (const Path& p : paths) sorted[first[bucket(p)]++] = p;
+}
+
+// Traces and lights up to 64 paths of one kind, adds their light up, spawns the next generation.
+void trace_packet(const FrameContext& frame, const Path* paths, int count, std::vector<Path>& next, PassTally& tally,
+                  const PathSums& sums) {
+  RayPacket rays;
+  HitPacket hits;
+  SurfacePacket surfaces;
+  rays.live = count == kPacketSize ? ~0ull : (1ull << count) - 1;
+  for (int lane = 0; lane < kPacketSize; ++lane) {
+    const Path& p = paths[lane < count ? lane : 0];
+    set_ray(rays, lane, {p.origin, 0, p.direction, std::numeric_limits<float>::infinity()});
+    surfaces.points.key[lane] = p.key;
+  }
+  const Pass pass = paths[0].kind == PathKind::reflection ? Pass::reflection : Pass::refraction;
+  {
+    const PassTimer timer(tally, pass);
+    count_rays(tally, pass, rays.live);
+    frame.kernels.trace_closest(frame.accelerator.view, rays, hits);
+  }
+  {
+    const PassTimer timer(tally, Pass::shade);
+    make_surfaces(frame.scene, rays, hits, rays.live, surfaces);
+  }
+  ColorPacket light;
+  LightDetail detail;
+  light_surfaces(frame, surfaces, tally, light, detail);
+
+  const PassTimer timer(tally, pass);
+  for (int lane = 0; lane < count; ++lane) {
+    const Path& p = paths[lane];
+    const Vec3 seen = surfaces.points.live >> lane & 1 ? light.color[lane] : frame.scene.background;
+    const Vec3 add = p.weight * seen;
+    sums.pixels[p.pixel] += add;
+    Vec3* part = p.root == PathKind::reflection ? sums.reflection : sums.refraction;
+    if (part) part[p.pixel] += add;
+  }
+  spawn_paths(frame, surfaces, paths, next);
+}
+
+}  // namespace
+
+void spawn_paths(const FrameContext& frame, const SurfacePacket& surfaces, const Path* parents, std::vector<Path>& out) {
+  for (int lane = 0; lane < kPacketSize; ++lane) {
+    if (!(surfaces.points.live >> lane & 1) || parents[lane].depth >= frame.settings.max_depth) continue;
+    if (frame.scene.materials[surfaces.material[lane]].optics == Optics::opaque) continue;
+    spawn_at(frame, surfaces, lane, parents[lane], out);
+  }
+}
+
+void trace_paths(const FrameContext& frame, PathScratch& scratch, PassTally& tally, const PathSums& sums) {
+  while (!scratch.current.empty()) {
+    sort_paths(scratch.current, scratch.sorted);
+    scratch.next.clear();
+    const std::vector<Path>& paths = scratch.sorted;
+    for (size_t first = 0; first < paths.size();) {
+      size_t end = first + 1;
+      while (end < paths.size() && end - first < kPacketSize && paths[end].kind == paths[first].kind) ++end;
+      trace_packet(frame, &paths[first], static_cast<int>(end - first), scratch.next, tally, sums);
+      first = end;
+    }
+    scratch.current.swap(scratch.next);
+  }
+}
+
+}  // namespace vitral

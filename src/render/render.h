@@ -1,0 +1,11 @@
+// A frame over trees that are already built: for callers that render several, and for tests.
+#pragma once
+#include "render/accelerator.h"
+#include "vitral/render.h"
+
+namespace vitral {
+
+Frame render_frame(const Scene& scene, const Accelerator& accelerator, const Camera& camera, const Settings& settings,
+                   ThreadPool& pool, Control& control);
+
+}  // namespace vitral

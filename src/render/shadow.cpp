@@ -1,0 +1,42 @@
+// Shadows: one any-hit ray per light for a point that faces it. Opaque surfaces block; glass tints.
+#include "render/frame.h"
+
+namespace vitral {
+namespace {
+
+// What is left of the light behind all sheets of glass on the ray, nearest first. Sheets at the very
+// same t, as at the edge that two triangles of a sheet share, count once.
+Vec3 glass_tint(const FrameContext& frame, Ray ray) {
+  Vec3 tint{1, 1, 1};
+  for (;;) {
+    const Hit hit = walk_closest(frame.accelerator.glass_view, ray);
+    if (hit.triangle == kNoTriangle) return tint;
+    const Material& m = frame.scene.materials[frame.scene.mesh.triangle_material[hit.triangle]];
+    tint *= m.optics == Optics::dissolve ? Vec3{1, 1, 1} * (1 - m.opacity) : m.transmission;
+    if (!(luminance(tint) > 0)) return {0, 0, 0};
+    ray.tmin = hit.t;
+  }
+}
+
+}  // namespace
+
+void light_visibility(const FrameContext& frame, const Light& light, const PointPacket& points, PassTally& tally,
+                      ColorPacket& visibility) {
+  for (Vec3& v : visibility.color) v = {1, 1, 1};
+  if (!frame.settings.effects.shadows) return;
+  const PassTimer timer(tally, Pass::shadows);
+  RayPacket rays;
+  frame.kernels.shadow_rays(light, points, frame.offset, rays);
+  if (rays.live == 0) return;
+  count_rays(tally, Pass::shadows, rays.live);
+  const uint64_t blocked = frame.kernels.trace_any(frame.accelerator.view, rays, GlassRule::passes);
+  for (int lane = 0; lane < kPacketSize; ++lane) {
+    if (blocked >> lane & 1) {
+      visibility.color[lane] = {0, 0, 0};
+    } else if (frame.accelerator.has_glass && (rays.live >> lane & 1)) {
+      visibility.color[lane] = glass_tint(frame, ray_of(rays, lane));
+    }
+  }
+}
+
+}  // namespace vitral
