@@ -22,7 +22,7 @@ enum class Query { closest, any };
 struct alignas(64) Derived {
   float rx[kPacketSize], ry[kPacketSize], rz[kPacketSize];  // safe reciprocals of the direction
   float sx[kPacketSize], sy[kPacketSize], sz[kPacketSize];  // shear
-  float t0[kPacketSize], t1[kPacketSize];                   // interval in the current cell
+  float t0[kPacketSize], t1[kPacketSize];                   // interval in the tree's box
   uint64_t z_is[3];                                         // rays whose dominant axis is x, y, z
   uint64_t traceable;
   float slack;
@@ -143,20 +143,26 @@ uint64_t test_triangle(const KdView& tree, const RayPacket& rays, const Derived&
   return met;
 }
 
+// The rays' intervals in the current cell. Lanes that are not being walked hold anything.
+struct alignas(64) Intervals {
+  float t0[kPacketSize], t1[kPacketSize];
+};
+
 // Which of the lanes want the near and the far child.
 struct Wanted {
   uint64_t near, far;
 };
 
-inline Wanted classify(uint64_t lanes, float split, const float* origin, const float* reciprocal, const Derived& d) {
+inline Wanted classify(uint64_t lanes, float split, const float* origin, const float* reciprocal, float slack,
+                       const Intervals& now) {
   Wanted w{0, 0};
   for (int g = 0; g < kPacketSize; g += kLanes) {
     if (group_empty(lanes, g)) continue;
     const Float r = load(reciprocal + g);
     const Float t = (Float(split) - load(origin + g)) * r;
-    const Float give = Float(d.slack) * absolute(r);
-    const Mask only_near = t - give > load(d.t1 + g);
-    const Mask only_far = both(invert(only_near), t + give < load(d.t0 + g));
+    const Float give = Float(slack) * absolute(r);
+    const Mask only_near = t - give > load(now.t1 + g);
+    const Mask only_far = both(invert(only_near), t + give < load(now.t0 + g));
     w.near |= static_cast<uint64_t>(bits(invert(only_far))) << g;
     w.far |= static_cast<uint64_t>(bits(invert(only_near))) << g;
   }
@@ -166,29 +172,30 @@ inline Wanted classify(uint64_t lanes, float split, const float* origin, const f
 }
 
 struct alignas(64) Waiting {
-  float t0[kPacketSize], t1[kPacketSize];
+  Intervals interval;
   uint64_t lanes;
   uint32_t node;
 };
 
-// Cuts the intervals at the plane: the near part stays in `d`, the far part goes to `w`.
-inline void cut_intervals(uint64_t lanes, float split, const float* origin, const float* reciprocal, Derived& d, Waiting& w) {
+// Cuts the intervals at the plane: the near part stays in `now`, the far part goes to `w`.
+inline void cut_intervals(uint64_t lanes, float split, const float* origin, const float* reciprocal, float slack,
+                          Intervals& now, Waiting& w) {
   for (int g = 0; g < kPacketSize; g += kLanes) {
     if (group_empty(lanes, g)) continue;
     const Float r = load(reciprocal + g);
     const Float t = (Float(split) - load(origin + g)) * r;
-    const Float give = Float(d.slack) * absolute(r);
-    const Float t1 = load(d.t1 + g);
-    store(w.t0 + g, greatest(t - give, load(d.t0 + g)));
-    store(w.t1 + g, t1);
-    store(d.t1 + g, least(t + give, t1));
+    const Float give = Float(slack) * absolute(r);
+    const Float t1 = load(now.t1 + g);
+    store(w.interval.t0 + g, greatest(t - give, load(now.t0 + g)));
+    store(w.interval.t1 + g, t1);
+    store(now.t1 + g, least(t + give, t1));
   }
 }
 
 // Walks the tree with `lanes`, whose directions all have the signs of bit 0-2 of `octant` (set:
 // negative). Returns the lanes that met something.
 template <Query query>
-uint64_t walk_octant(const KdView& tree, const RayPacket& rays, Derived& d, uint64_t lanes, int octant, GlassRule glass,
+uint64_t walk_octant(const KdView& tree, const RayPacket& rays, const Derived& d, uint64_t lanes, int octant, GlassRule glass,
                      HitPacket* hits) {
   const float* origin[3] = {rays.ox, rays.oy, rays.oz};
   const float* reciprocal[3] = {d.rx, d.ry, d.rz};
@@ -202,6 +209,11 @@ uint64_t walk_octant(const KdView& tree, const RayPacket& rays, Derived& d, uint
     }
   }
 
+  Intervals now;
+  for (int g = 0; g < kPacketSize; g += kLanes) {
+    store(now.t0 + g, load(d.t0 + g));
+    store(now.t1 + g, load(d.t1 + g));
+  }
   Waiting stack[kMaxTreeDepth];
   int waiting = 0;
   uint32_t node = 0;
@@ -213,7 +225,7 @@ uint64_t walk_octant(const KdView& tree, const RayPacket& rays, Derived& d, uint
       const int a = axis(n);
       const uint32_t negative = static_cast<uint32_t>(octant >> a) & 1u;
       const uint32_t near = child(n) + negative, far = child(n) + 1 - negative;
-      const Wanted wanted = classify(lanes, split(n), origin[a], reciprocal[a], d);
+      const Wanted wanted = classify(lanes, split(n), origin[a], reciprocal[a], d.slack, now);
       if (wanted.far == 0) {
         node = near;
       } else if (wanted.near == 0) {
@@ -222,7 +234,7 @@ uint64_t walk_octant(const KdView& tree, const RayPacket& rays, Derived& d, uint
         Waiting& w = stack[waiting++];
         w.node = far;
         w.lanes = wanted.far;
-        cut_intervals(lanes, split(n), origin[a], reciprocal[a], d, w);
+        cut_intervals(lanes, split(n), origin[a], reciprocal[a], d.slack, now, w);
         node = near;
         lanes = wanted.near;
       }
@@ -232,10 +244,10 @@ uint64_t walk_octant(const KdView& tree, const RayPacket& rays, Derived& d, uint
     for (uint32_t i = 0; i < count(leaf) && lanes != 0; ++i) {
       const uint32_t id = tree.references[first_reference(leaf) + i];
       if (glass == GlassRule::passes && (tree.triangles[id].flags & kGlassTriangle)) continue;
-      const uint64_t now = same_axis ? test_triangle<query, true>(tree, rays, d, viewer, lanes, id, hits)
+      const uint64_t here = same_axis ? test_triangle<query, true>(tree, rays, d, viewer, lanes, id, hits)
                                      : test_triangle<query, false>(tree, rays, d, viewer, lanes, id, hits);
-      met |= now;
-      if constexpr (query == Query::any) lanes &= ~now;
+      met |= here;
+      if constexpr (query == Query::any) lanes &= ~here;
     }
     if constexpr (query == Query::any) open &= ~met;
 
@@ -247,14 +259,14 @@ uint64_t walk_octant(const KdView& tree, const RayPacket& rays, Derived& d, uint
       lanes = w.lanes & open;
       for (int g = 0; g < kPacketSize; g += kLanes) {
         if (group_empty(lanes, g)) continue;
-        const Float t0 = load(w.t0 + g);
-        Float t1 = load(w.t1 + g);
+        const Float t0 = load(w.interval.t0 + g);
+        Float t1 = load(w.interval.t1 + g);
         if constexpr (query == Query::closest) {
           const Float best = load(hits->t + g);
           lanes &= ~(static_cast<uint64_t>(bits(best < t0)) << g);
           t1 = least(best, t1);
         }
-        store(d.t0 + g, t0), store(d.t1 + g, t1);
+        store(now.t0 + g, t0), store(now.t1 + g, t1);
       }
     } while (lanes == 0);
   }
