@@ -1,27 +1,91 @@
 // Reads the project file: scenes, cameras, lights and the pipelines that render them.
+//
+// The format. Names of elements and attributes are compared without regard to case; what is not
+// listed here is a warning. A NUMBER is finite. A VECTOR is written x="1" y="2" z="3", value="1 2 3"
+// or as text, with spaces or commas; a COLOR the same with r, g, b, or as one number for grey. A
+// plain name or file is written name="...", file="..." or as text. Paths are relative to the project.
+//
+//   <project width="1024" height="1024">                 size of the picture, 1..16384
+//     <assets>
+//       <scenes><scene name="..."><file name="a.obj"/>   any number of .obj and .ply; all are loaded
+//       <viewports><viewport name="..."><bgcolor COLOR/>  the background
+//       <cameras><camera name="...">
+//         <perspective fov="60" near="0.1" far="1000"/>  fov vertical, in degrees
+//         <position VECTOR/> <view VECTOR/> <up VECTOR/>  view: the way it looks; up: 0 1 0 if left out
+//       <lights><light name="..." type="directional|point">
+//         <direction VECTOR/> <position VECTOR/>   with a direction the light is directional, with a
+//         <color COLOR/> <ambient COLOR/>          position only it is a point; ambient adds to the scene
+//       <materialLibs><mlib name="a.mtl"/>         must exist; an OBJ loads its own by itself
+//     <pipelines>
+//       <pipeline name="..." default="true" defaultCamera="...">   one or more
+//         <pass class="raster" name="..."/>        the targets pos, norm, color (other name: default)
+//         <pass class="trace" name="...">          (other name: optix); empty: a pass-through
+//           <shadows/>
+//           <reflection maxDepth="5" minImportance="0.005" fresnel="exact|schlick|report"/>
+//           <refraction maxDepth="5" minImportance="0.005" fresnel="exact|schlick|report"/>
+//           <ambientOcclusion samples="16" distance="0.5" exponent="1"/>   samples: a square number
+//         <pass class="combine" name="..."/>       (other name: quad)
+//
+// reflection and refraction share their figures: what both give must agree. Any pass may have
+// compositing="physical|report" and seed="1", and may name the <camera>, <lights>, <scenes>,
+// <viewport> and <renderTarget(s)> it uses: the camera serves where the pipeline names none, the
+// others must exist, and everything of the assets takes part in every pass. Any pass may also hold
+//
+//   <materialMaps><map fromMaterial="Vidro" kind="thin|solid|mirror" index="1.1" tint="0.9"/>
+//
+// which gives the material of that name, in this pipeline, its glass: the index of refraction and
+// the tint (COLOR) of one sheet, or of a mirror; toMaterial and toLibrary may be there and say nothing.
 #pragma once
 #include "vitral/error.h"
 #include "vitral/render.h"
 #include "vitral/scene.h"
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
 namespace vitral {
 
+// What a <map> makes of the materials called `from`.
+struct MaterialMap {
+  std::string from;
+  Optics optics = Optics::thin;  // thin, solid or mirror
+  float index = 1.1f;            // of refraction, 1..10
+  Vec3 tint{1, 1, 1};
+  size_t line = 0;
+};
+
 struct Pipeline {
   std::string name;
-  std::string camera;  // name of its default camera
+  std::string camera;  // name of its default camera; empty when the project has none
   Settings settings;   // effects and their figures; width and height of the project
+  std::vector<MaterialMap> maps;
+};
+
+struct MeshFile {
+  std::string path;  // as it can be opened
+  size_t line = 0;   // where the project names it
 };
 
 struct Project {
+  std::string file;
+  std::vector<MeshFile> meshes;
   Scene scene;
   std::vector<Pipeline> pipelines;  // at least one
   size_t default_pipeline = 0;
 };
 
-// Throws InputError with file:line; unknown elements and attributes are warnings.
+// Reads the project file alone, so that what it asks for can be checked before its meshes are
+// loaded. Throws InputError with file:line; unknown elements and attributes are warnings.
+Project read_project(const std::string& path, Warnings& warnings);
+
+// Loads the meshes into project.scene and applies the material maps of one pipeline.
+void load_assets(Project& project, const Pipeline& pipeline, Warnings& warnings);
+
+// Both, for the default pipeline.
 Project load_project(const std::string& path, Warnings& warnings);
+
+// Says in a few words what is wrong with a camera; empty when nothing is.
+std::string camera_fault(const Camera& camera);
 
 }  // namespace vitral

@@ -1,0 +1,188 @@
+#include "app/job.h"
+
+#include "app/auto_view.h"
+#include "io/mesh_file.h"
+#include "io/text.h"
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+
+namespace vitral {
+namespace {
+
+namespace fs = std::filesystem;
+
+InputKind kind_of(const std::string& path) {
+  std::error_code code;
+  const fs::file_status status = fs::status(path, code);
+  if (status.type() == fs::file_type::none) fail(path, code.message());
+  if (!fs::exists(status)) fail(path, "no such file");
+  if (fs::is_directory(status)) fail(path, "is a directory");
+  const std::string extension = lower_case(fs::path(path).extension().string());
+  if (extension == ".xml") return InputKind::project;
+  if (extension == ".obj" || extension == ".ply") return InputKind::mesh;
+  fail(path, "is neither a project (.xml) nor a mesh (.obj, .ply) by its name");
+}
+
+template <class Named>
+std::string listed(const std::vector<Named>& things) {
+  std::string line;
+  for (const Named& thing : things) line += (line.empty() ? "" : ", ") + thing.name;
+  return line.empty() ? "it has none" : "it has " + line;
+}
+
+template <class Named>
+const Named& find(const std::vector<Named>& things, const std::string& name, const char* what,
+                  const std::string& file) {
+  for (const Named& thing : things) {
+    if (thing.name == name) return thing;
+  }
+  throw UsageError(file + " has no " + what + " '" + name + "'; " + listed(things));
+}
+
+template <class T>
+void override_with(const std::optional<T>& given, T& value) {
+  if (given) value = *given;
+}
+
+void override_settings(const Options& options, Settings& settings) {
+  if (options.size) {
+    settings.width = options.size->width;
+    settings.height = options.size->height;
+  }
+  override_with(options.crop, settings.crop);
+  override_with(options.effects, settings.effects);
+  override_with(options.ao_samples, settings.ao_samples);
+  override_with(options.ao_distance, settings.ao_distance);
+  override_with(options.ao_exponent, settings.ao_exponent);
+  override_with(options.max_depth, settings.max_depth);
+  override_with(options.min_importance, settings.min_importance);
+  override_with(options.fresnel, settings.fresnel);
+  override_with(options.primary, settings.primary);
+  override_with(options.isa, settings.isa);
+  override_with(options.threads, settings.threads);
+  override_with(options.seed, settings.seed);
+  settings.aovs = options.aovs;
+}
+
+void override_camera(const Options& options, Camera& camera) {
+  override_with(options.eye, camera.position);
+  override_with(options.view, camera.view);
+  override_with(options.up, camera.up);
+  override_with(options.fov, camera.fov);
+  override_with(options.near, camera.near);
+  override_with(options.far, camera.far);
+  const std::string fault = camera_fault(camera);
+  if (!fault.empty()) throw UsageError("camera: " + fault);
+}
+
+void check_frame(const Job& job, const Options& options) {
+  const Settings& settings = job.pipeline.settings;
+  const Rectangle& crop = settings.crop;
+  if (crop.x + crop.width > settings.width || crop.y + crop.height > settings.height) {
+    throw UsageError("--crop reaches out of the picture of " + std::to_string(settings.width) + "x" +
+                     std::to_string(settings.height) + " pixels");
+  }
+  const size_t needed = frame_bytes(settings), limit = memory_limit();
+  if (needed <= limit) return;
+  const std::string reason = std::to_string(settings.width) + "x" + std::to_string(settings.height) +
+                             " pixels need " + std::to_string(needed >> 20) + " MiB, there are " +
+                             std::to_string(limit >> 20);
+  if (options.size || options.crop) throw UsageError(reason);
+  fail(job.input, reason);
+}
+
+// The first directional light takes the direction; a project without one gets a white sun.
+void turn_sun(const Vec3& direction, Scene& scene) {
+  const auto found = std::find_if(scene.lights.begin(), scene.lights.end(),
+                                  [](const Light& light) { return light.kind == Light::Kind::directional; });
+  Light& sun = found != scene.lights.end() ? *found : scene.lights.emplace_back();
+  sun.direction = normalize(direction);
+}
+
+}  // namespace
+
+Job plan_job(const Options& options) {
+  Job job;
+  job.input = options.inputs[0];
+  job.kind = kind_of(job.input);
+  if (job.kind == InputKind::project) {
+    job.project = read_project(job.input, job.warnings);
+    const Project& project = job.project;
+    job.pipeline = options.pipeline ? find(project.pipelines, *options.pipeline, "pipeline", job.input)
+                                    : project.pipelines[project.default_pipeline];
+  } else {
+    for (const auto& [name, value] :
+         {std::pair{"pipeline", &options.pipeline}, std::pair{"camera", &options.camera}}) {
+      if (*value)
+        throw UsageError(std::string("--") + name + " needs a project: a mesh has no " + name + "s");
+    }
+    job.project.file = job.input;
+    job.project.meshes = {{job.input, 0}};
+    job.project.pipelines = {job.pipeline};
+  }
+
+  override_settings(options, job.pipeline.settings);
+  const std::string camera = options.camera.value_or(job.pipeline.camera);
+  job.automatic = camera.empty();
+  if (!job.automatic) {
+    job.camera = find(job.project.scene.cameras, camera, "camera", job.input);
+    override_camera(options, job.camera);
+  }
+  check_frame(job, options);
+  return job;
+}
+
+void load_job(Job& job, const Options& options) {
+  const auto start = std::chrono::steady_clock::now();
+  Scene& scene = job.project.scene;
+  load_assets(job.project, job.pipeline, job.warnings);
+  const Box box = bounds(scene.mesh);
+  if (is_empty(box)) fail(job.input, "there is no triangle in it");
+
+  if (job.automatic) {
+    Settings& settings = job.pipeline.settings;
+    const float aspect = static_cast<float>(settings.width) / static_cast<float>(settings.height);
+    job.camera = auto_camera(box, aspect,
+                             {options.eye, options.view, options.up, options.fov, options.near, options.far});
+    if (job.kind == InputKind::mesh) {
+      light_automatically(job.camera, scene);
+      if (!options.ao_distance) settings.ao_distance = auto_ao_distance(box);
+    }
+  }
+  if (options.sun) turn_sun(*options.sun, scene);
+  job.load_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+size_t frame_bytes(const Settings& settings) {
+  // Radiance, pixels, auxiliary pictures, and what the encoder of the PNG holds beside them.
+  const size_t bytes = sizeof(Vec3) * (1 + settings.aovs.size()) + sizeof(Rgb8) * 3;
+  const bool whole = settings.crop.width == 0;
+  return bytes * static_cast<size_t>(whole ? settings.width : settings.crop.width) *
+         static_cast<size_t>(whole ? settings.height : settings.crop.height);
+}
+
+size_t memory_limit() {
+  size_t limit = static_cast<size_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<size_t>(sysconf(_SC_PAGE_SIZE));
+  rlimit address_space{};
+  if (getrlimit(RLIMIT_AS, &address_space) == 0 && address_space.rlim_cur != RLIM_INFINITY) {
+    limit = std::min(limit, static_cast<size_t>(address_space.rlim_cur));
+  }
+  // The control group's limit; the file holds a number or the word max, and may not be there.
+  size_t group = 0;
+  if (std::ifstream("/sys/fs/cgroup/memory.max") >> group) limit = std::min(limit, group);
+  return limit;
+}
+
+size_t peak_memory() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<size_t>(usage.ru_maxrss) * 1024;
+}
+
+}  // namespace vitral

@@ -1,0 +1,116 @@
+#include "app/commands.h"
+#include "app/interrupt.h"
+#include "app/progress.h"
+#include "io/file.h"
+#include "io/image_file.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <utility>
+
+namespace vitral {
+namespace {
+
+namespace fs = std::filesystem;
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+// Every file that a render writes.
+struct Outputs {
+  std::string png;
+  std::vector<std::pair<std::string, std::string>> aovs;  // name and path
+  std::string stats;
+};
+
+// NAME.png here by default; auxiliary pictures lie beside the output, NAME.depth.pfm and so on.
+Outputs outputs_of(const Options& options) {
+  Outputs outputs;
+  const std::string stem = fs::path(options.inputs[0]).stem().string();
+  outputs.png = options.output.empty() ? stem + ".png" : options.output;
+  const fs::path base = outputs.png == "-" ? fs::path(stem) : fs::path(outputs.png).replace_extension();
+  for (const std::string& name : options.aovs)
+    outputs.aovs.emplace_back(name, base.string() + "." + name + ".pfm");
+  outputs.stats = options.stats;
+  return outputs;
+}
+
+// No two outputs may be the same file, and none an input.
+void check_outputs(const Outputs& outputs, const Job& job) {
+  std::vector<std::string> inputs{job.input};
+  for (const MeshFile& mesh : job.project.meshes) inputs.push_back(mesh.path);
+  check_output(outputs.png, inputs);
+  for (const auto& [name, path] : outputs.aovs) check_output(path, inputs);
+  if (outputs.stats.empty()) return;
+  check_output(outputs.stats, inputs);
+  if (outputs.stats == outputs.png)
+    throw UsageError("--stats and the picture go to the same place: " + outputs.png);
+}
+
+void print_summary(const Outputs& outputs, const Frame& frame, const RunTimes& times) {
+  uint64_t rays = 0;
+  for (const PassStats& pass : frame.stats.passes) rays += pass.rays;
+  std::fprintf(
+      stderr,
+      "%s: %dx%d, %zu triangles, %.1f Mrays; load %s, build %s, frame %s, write %s (%d threads, %s)\n",
+      outputs.png == "-" ? "standard output" : outputs.png.c_str(), frame.pixels.width, frame.pixels.height,
+      frame.stats.triangles, static_cast<double>(rays) * 1e-6, in_words(times.load_seconds).c_str(),
+      in_words(frame.stats.build_seconds).c_str(), in_words(frame.stats.frame_seconds).c_str(),
+      in_words(times.write_seconds).c_str(), frame.stats.threads, frame.stats.isa.c_str());
+}
+
+// The picture comes last: when it is there, everything is.
+void write_outputs(const Outputs& outputs, const Frame& frame) {
+  for (const auto& [name, path] : outputs.aovs) {
+    const auto found = std::find_if(frame.aovs.begin(), frame.aovs.end(),
+                                    [&, wanted = &name](const Aov& aov) { return aov.name == *wanted; });
+    if (found == frame.aovs.end()) fail(path, "the renderer made no picture of this name");
+    write_pfm(path, *found);
+  }
+  write_png(outputs.png, frame.pixels);
+}
+
+}  // namespace
+
+int run_render(const Options& options) {
+  // Everything that can be refused is refused before the meshes are loaded.
+  Job job = plan_job(options);
+  const Outputs outputs = outputs_of(options);
+  check_outputs(outputs, job);
+  report_warnings(job.warnings, options);
+
+  load_job(job, options);
+  report_warnings(job.warnings, options);
+
+  // From here on a file may be half written: an interruption waits until somebody notices it.
+  Control control;
+  const InterruptGuard guard(control.stop);
+  const bool talks = is_terminal(STDERR_FILENO) && !options.quiet;
+  const auto bar = std::make_unique<ProgressBar>();
+  if (talks) control.on_progress = [&](const Progress& progress) { bar->update(progress); };
+  const auto start = std::chrono::steady_clock::now();
+  const Frame frame = render(job.project.scene, job.camera, job.pipeline.settings, control);
+  control.on_progress = nullptr;
+  bar->erase();
+  RunTimes times{job.load_seconds, seconds_since(start), 0};
+  if (frame.stats.not_finite_pixels > 0) {
+    job.warnings.push_back(std::to_string(frame.stats.not_finite_pixels) +
+                           " pixels have no finite value and are painted red");
+  }
+  report_warnings(job.warnings, options);
+
+  const auto written = std::chrono::steady_clock::now();
+  write_outputs(outputs, frame);
+  times.write_seconds = seconds_since(written);
+  if (!outputs.stats.empty()) write_file(outputs.stats, stats_json(job, frame.stats, times));
+  if (talks) print_summary(outputs, frame, times);
+  return kDone;
+}
+
+}  // namespace vitral
