@@ -3,9 +3,12 @@
 #include "kdtree/build.h"
 #include "kdtree/kdtree.h"
 #include "kernels/packet.h"
+#include "vitral/render.h"
 #include "vitral/scene.h"
 
 #include <cmath>
+#include <cstring>
+#include <functional>
 #include <random>
 #include <vector>
 
@@ -86,6 +89,68 @@ inline std::vector<KdTriangle> soup(Random& random, int count, float size) {
     add_triangle(out, p, p + a, p + b);
   }
   return out;
+}
+
+// --- scenes for whole renders ---------------------------------------------------------------------
+
+inline uint32_t add_material(Scene& scene, const Material& m) {
+  scene.materials.push_back(m);
+  return static_cast<uint32_t>(scene.materials.size() - 1);
+}
+
+// The parallelogram a, a+u, a+u+v, a+v, facing cross(u, v); texture coordinates (0,0) to (1,1).
+inline void add_quad(Scene& scene, uint32_t material, const Vec3& a, const Vec3& u, const Vec3& v) {
+  Mesh& m = scene.mesh;
+  const uint32_t p = static_cast<uint32_t>(m.positions.size()), t = static_cast<uint32_t>(m.texcoords.size());
+  m.positions.insert(m.positions.end(), {a, a + u, a + u + v, a + v});
+  m.texcoords.insert(m.texcoords.end(), {{0, 0}, {1, 0}, {1, 1}, {0, 1}});
+  for (const uint32_t k : {1u, 2u}) {
+    m.triangles.push_back({p, p + k, p + k + 1});
+    m.triangle_texcoords.push_back({t, t + k, t + k + 1});
+    m.triangle_material.push_back(material);
+  }
+}
+
+inline void add_triangles(Scene& scene, uint32_t material, const std::vector<KdTriangle>& triangles) {
+  Mesh& m = scene.mesh;
+  for (const KdTriangle& t : triangles) {
+    const uint32_t p = static_cast<uint32_t>(m.positions.size());
+    for (size_t k = 0; k < 3; ++k) m.positions.push_back(corner_of(t, k));
+    m.triangles.push_back({p, p + 1, p + 2});
+    m.triangle_texcoords.push_back({kNoIndex, kNoIndex, kNoIndex});
+    m.triangle_material.push_back(material);
+  }
+}
+
+inline Light sun(const Vec3& direction, const Vec3& color = {1, 1, 1}) {
+  Light light;
+  light.direction = normalize(direction);
+  light.color = color;
+  return light;
+}
+
+inline Camera camera_at(const Vec3& position, const Vec3& view, float fov = 60, const Vec3& up = {0, 1, 0}) {
+  return {"", position, view, up, fov, 0.01f, 1000};
+}
+
+inline Effects only(bool Effects::*effect) {
+  Effects e{false, false, false, false};
+  e.*effect = true;
+  return e;
+}
+inline constexpr Effects kNoEffects{false, false, false, false};
+
+inline Frame render_scene(const Scene& scene, const Camera& camera, const Settings& settings) {
+  Control control;
+  return render(scene, camera, settings, control);
+}
+
+inline const Vec3& pixel(const Frame& frame, int x, int y) { return frame.radiance.row(y)[x]; }
+
+inline bool same_bytes(const Frame& a, const Frame& b) {
+  return a.radiance.pixels.size() == b.radiance.pixels.size() &&
+         std::memcmp(a.radiance.pixels.data(), b.radiance.pixels.data(), a.radiance.pixels.size() * sizeof(Vec3)) == 0 &&
+         std::memcmp(a.pixels.pixels.data(), b.pixels.pixels.data(), a.pixels.pixels.size() * sizeof(Rgb8)) == 0;
 }
 
 inline bool same_bits(const Hit& a, const Hit& b) {
