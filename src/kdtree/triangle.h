@@ -97,7 +97,9 @@ static inline auto surround_origin(const Vec3T<F>& a, const Vec3T<F>& b, const V
 
 // For a ray that just misses the triangle: the barycentrics of its point in the triangle's plane,
 // each raised to 0 and then scaled so that u + v is at most 1, and t there, kept within [near, far].
-// Corner a where the triangle is seen exactly from the side. All results are finite.
+// Seen exactly from the side the triangle has no such point: corner a stands in. A ray that has it
+// behind its origin runs past the horizon of a large triangle: the corner farthest along stands in.
+// All results are finite.
 template <class F, class D>
 static inline TriangleHit<F, bool> nearby_point(const Vec3T<F>& a, const Vec3T<F>& b, const Vec3T<F>& c,
                                                 const Shear<F>& shear, const EdgeValues<D>& e, const F& near,
@@ -111,12 +113,20 @@ static inline TriangleHit<F, bool> nearby_point(const Vec3T<F>& a, const Vec3T<F
   const D scale = one / select(u + v > one, u + v, one);
   u = u * scale;
   v = v * scale;
-  const D z = (((one - u) - v) * widen(a.z) + u * widen(b.z)) + v * widen(c.z);
-  const F t = narrow(z / widen(shear.z));
-  const F u_out = narrow(u);
-  const F room = F(1.0f) - u_out, v_out = narrow(v);
-  const F t_near = select(t > near, t, near);
-  return {false, select(t_near < far, t_near, far), u_out, select(v_out < room, v_out, room)};
+
+  const D ta = widen(a.z) / widen(shear.z), tb = widen(b.z) / widen(shear.z), tc = widen(c.z) / widen(shear.z);
+  D t = (((one - u) - v) * ta + u * tb) + v * tc;
+  const auto behind = t <= zero;
+  const auto b_is_farthest = both(tb > ta, tb >= tc), c_is_farthest = both(tc > ta, tc > tb);
+  u = select(behind, select(b_is_farthest, one, zero), u);
+  v = select(behind, select(c_is_farthest, one, zero), v);
+  t = select(behind, select(b_is_farthest, tb, select(c_is_farthest, tc, ta)), t);
+  t = select(t > widen(near), t, widen(near));
+  t = select(t < widen(far), t, widen(far));
+
+  // Rounding must not undo u + v <= 1.
+  const F u_out = narrow(u), v_out = narrow(v), room = F(1.0f) - u_out;
+  return {false, narrow(t), u_out, select(v_out < room, v_out, room)};
 }
 
 }  // namespace vitral

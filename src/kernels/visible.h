@@ -18,6 +18,7 @@ static inline auto visible_point(const Vec3T<F>& a, const Vec3T<F>& b, const Vec
   const Vec3T<F> pa = project(a, shear), pb = project(b, shear), pc = project(c, shear);
   const auto edges = edge_values(pa, pb, pc);
   auto hit = surround_origin(pa, pb, pc, shear, edges);
+  hit.hit = both(hit.hit, hit.t > F(0.0f));
   if (any(invert(hit.hit))) {
     const auto nearby = nearby_point(pa, pb, pc, shear, edges, near, far);
     hit.t = select(hit.hit, hit.t, nearby.t);
