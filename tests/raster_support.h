@@ -3,7 +3,8 @@
 #include "kdtree/kdtree.h"
 #include "kernels/kernels.h"
 #include "raster/frame.h"
-#include "simd/isa.h"
+#include "render/kernel_choice.h"
+#include "support.h"
 #include "vitral/scene.h"
 
 #include <algorithm>
@@ -16,48 +17,14 @@
 
 namespace vitral {
 
-#define VITRAL_DECLARE(isa)                                                                \
-  namespace isa {                                                                          \
-  void fill_tile(const RasterView& view, int tile_x, int tile_y, TileVisibility& out);     \
-  void intersect_visible(const Pinhole& camera, const KdTriangle* triangles, int x, int y, \
-                         const uint32_t* numbers, HitPacket& hits);                        \
-  }
-VITRAL_FOR_EACH_ISA(VITRAL_DECLARE)
-#undef VITRAL_DECLARE
-
 namespace raster_test {
 
-struct RasterIsa {
-  const char* name;
-  decltype(&scalar::fill_tile) fill_tile;
-  decltype(&scalar::intersect_visible) intersect_visible;
-};
+using test::Random;
 
-// Those that this machine runs; the first is scalar.
-inline std::vector<RasterIsa> machine_isas() {
-  std::vector<RasterIsa> isas;
-#define VITRAL_ADD(isa) \
-  if (cpu_runs(#isa)) isas.push_back({#isa, isa::fill_tile, isa::intersect_visible});
-  VITRAL_FOR_EACH_ISA(VITRAL_ADD)
-#undef VITRAL_ADD
-  return isas;
+// A whole number in [low, high].
+inline int between(Random& random, int low, int high) {
+  return low + static_cast<int>(random.below(static_cast<uint32_t>(high - low + 1)));
 }
-
-// A small, repeatable random source (Marsaglia, "Xorshift RNGs", 2003).
-struct Random {
-  uint64_t state;
-  explicit Random(uint64_t seed) : state(seed * 0x9e3779b97f4a7c15u + 1) {}
-  uint64_t next() {
-    state ^= state << 13;
-    state ^= state >> 7;
-    state ^= state << 17;
-    return state;
-  }
-  int below(int n) { return static_cast<int>((next() >> 20) % static_cast<uint64_t>(n)); }
-  int between(int low, int high) { return low + below(high - low + 1); }
-  float unit() { return static_cast<float>(next() >> 40) * 0x1p-24f; }
-  float between(float low, float high) { return low + (high - low) * unit(); }
-};
 
 // Looks along -z from the world's origin; the pixel of the point (x, -y, -1) is (x, y) exactly.
 inline Pinhole pixel_camera(float near = 0.125f, float far = 1e6f) {
@@ -123,8 +90,8 @@ struct Options {
   const CutOuts* cut_outs = nullptr;
 };
 
-inline Picture rasterize(const RasterIsa& isa, const Pinhole& camera, int width, int height, const Mesh& mesh,
-                         const Options& options = {}) {
+inline Picture rasterize(const Kernels& kernels, const Pinhole& camera, int width, int height,
+                         const Mesh& mesh, const Options& options = {}) {
   RasterFrame frame;
   setup_frame(camera, width, height, options.crop, mesh, in_order, frame);
   const RasterView view = make_view(frame, camera, options.triangles, options.cut_outs);
@@ -134,7 +101,7 @@ inline Picture rasterize(const RasterIsa& isa, const Pinhole& camera, int width,
   const auto tile = std::make_unique<TileVisibility>();
   for (int ty = 0; ty * kTileSide < height; ++ty) {
     for (int tx = 0; tx * kTileSide < width; ++tx) {
-      isa.fill_tile(view, tx, ty, *tile);
+      kernels.fill_tile(view, tx, ty, *tile);
       for (int y = 0; y < kTileSide; ++y) {
         for (int x = 0; x < kTileSide; ++x) {
           const int px = tx * kTileSide + x, py = ty * kTileSide + y;
@@ -152,14 +119,14 @@ inline Picture rasterize(const RasterIsa& isa, const Pinhole& camera, int width,
 }
 
 // How many triangles cover each pixel when every one is filled alone.
-inline std::vector<int> count_coverage(const RasterIsa& isa, const Pinhole& camera, int width, int height,
+inline std::vector<int> count_coverage(const Kernels& kernels, const Pinhole& camera, int width, int height,
                                        const Mesh& mesh) {
   std::vector<int> count(static_cast<size_t>(width * height), 0);
   Mesh one;
   one.positions = mesh.positions;
   for (const Corners& c : mesh.triangles) {
     one.triangles = {c};
-    const Picture p = rasterize(isa, camera, width, height, one);
+    const Picture p = rasterize(kernels, camera, width, height, one);
     for (size_t i = 0; i < count.size(); ++i) count[i] += p.triangle[i] != kNoTriangle;
   }
   return count;
