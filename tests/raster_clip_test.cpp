@@ -49,7 +49,7 @@ TEST(RasterClip, ABoxAroundTheCameraCoversEveryPixelOnce) {
   for (int round = 0; round < 60; ++round) {
     const int n = 1 + round % 3;
     const float half = round % 2 == 0 ? 1.0f : 3000.0f;
-    const float near = std::array{0.5f, 1e-3f, 1e-6f, 1e-9f}[random.below(4)] * half;
+    const float near = std::array{0.2f, 1e-3f, 1e-6f, 1e-9f}[random.below(4)] * half;
     const Pinhole camera = random_camera(random, size, random.between(0.2f, 3.0f), near, 1e9f);
     const Mesh mesh = box_around_origin(n, half);
     const Kernels& kernels =
