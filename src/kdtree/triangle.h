@@ -59,23 +59,74 @@ struct TriangleHit {
   F t, u, v;
 };
 
-// The exact test and, where it hits, t and the barycentrics: u belongs to corner b, v to c.
+// Twice the signed areas of the three triangles that the origin makes with the edges of the projected
+// one, exact but for one rounding each, and their sum. u lies across from corner a, and so on.
+template <class D>
+struct EdgeValues {
+  D u, v, w, det;
+};
 template <class F>
-static inline auto surround_origin(const Vec3T<F>& a, const Vec3T<F>& b, const Vec3T<F>& c,
-                                   const Shear<F>& shear) {
-  const auto ax = widen(a.x), ay = widen(a.y), bx = widen(b.x), by = widen(b.y), cx = widen(c.x), cy = widen(c.y);
+static inline auto edge_values(const Vec3T<F>& a, const Vec3T<F>& b, const Vec3T<F>& c) {
+  const auto ax = widen(a.x), ay = widen(a.y), bx = widen(b.x), by = widen(b.y), cx = widen(c.x),
+             cy = widen(c.y);
   using D = decltype(widen(a.x));
   const D u = cx * by - cy * bx;
   const D v = ax * cy - ay * cx;
   const D w = bx * ay - by * ax;
-  const D det = (u + v) + w;
+  return EdgeValues<D>{u, v, w, (u + v) + w};
+}
+
+// The exact test and, where it hits, t and the barycentrics: u belongs to corner b, v to c.
+template <class F, class D>
+static inline auto surround_origin(const Vec3T<F>& a, const Vec3T<F>& b, const Vec3T<F>& c,
+                                   const Shear<F>& shear, const EdgeValues<D>& e) {
   const D zero = D(0.0);
-  const auto inside = either(both(both(u >= zero, v >= zero), both(w >= zero, det > zero)),
-                             both(both(u <= zero, v <= zero), both(w <= zero, det < zero)));
-  const D inverse = D(1.0) / select(inside, det, D(1.0));
-  const D z = (u * widen(a.z) + v * widen(b.z)) + w * widen(c.z);
+  const auto inside = either(both(both(e.u >= zero, e.v >= zero), both(e.w >= zero, e.det > zero)),
+                             both(both(e.u <= zero, e.v <= zero), both(e.w <= zero, e.det < zero)));
+  const D inverse = D(1.0) / select(inside, e.det, D(1.0));
+  const D z = (e.u * widen(a.z) + e.v * widen(b.z)) + e.w * widen(c.z);
   using M = decltype(either(inside, inside));
-  return TriangleHit<F, M>{inside, narrow(z * inverse / widen(shear.z)), narrow(v * inverse), narrow(w * inverse)};
+  return TriangleHit<F, M>{inside, narrow(z * inverse / widen(shear.z)), narrow(e.v * inverse),
+                           narrow(e.w * inverse)};
+}
+template <class F>
+static inline auto surround_origin(const Vec3T<F>& a, const Vec3T<F>& b, const Vec3T<F>& c,
+                                   const Shear<F>& shear) {
+  return surround_origin(a, b, c, shear, edge_values(a, b, c));
+}
+
+// For a ray that just misses the triangle: the barycentrics of its point in the triangle's plane,
+// each raised to 0 and then scaled so that u + v is at most 1, and t there, kept within [near, far].
+// Seen exactly from the side the triangle has no such point: corner a stands in. A ray that has it
+// behind its origin runs past the horizon of a large triangle: the corner farthest along stands in.
+// All results are finite.
+template <class F, class D>
+static inline TriangleHit<F, bool> nearby_point(const Vec3T<F>& a, const Vec3T<F>& b, const Vec3T<F>& c,
+                                                const Shear<F>& shear, const EdgeValues<D>& e, const F& near,
+                                                const F& far) {
+  const D zero = D(0.0), one = D(1.0);
+  const auto from_the_side = e.det == zero;
+  const D inverse = select(from_the_side, zero, one / select(from_the_side, one, e.det));
+  D u = e.v * inverse, v = e.w * inverse;
+  u = select(u > zero, u, zero);
+  v = select(v > zero, v, zero);
+  const D scale = one / select(u + v > one, u + v, one);
+  u = u * scale;
+  v = v * scale;
+
+  const D ta = widen(a.z) / widen(shear.z), tb = widen(b.z) / widen(shear.z), tc = widen(c.z) / widen(shear.z);
+  D t = (((one - u) - v) * ta + u * tb) + v * tc;
+  const auto behind = t <= zero;
+  const auto b_is_farthest = both(tb > ta, tb >= tc), c_is_farthest = both(tc > ta, tc > tb);
+  u = select(behind, select(b_is_farthest, one, zero), u);
+  v = select(behind, select(c_is_farthest, one, zero), v);
+  t = select(behind, select(b_is_farthest, tb, select(c_is_farthest, tc, ta)), t);
+  t = select(t > widen(near), t, widen(near));
+  t = select(t < widen(far), t, widen(far));
+
+  // Rounding must not undo u + v <= 1.
+  const F u_out = narrow(u), v_out = narrow(v), room = F(1.0f) - u_out;
+  return {false, narrow(t), u_out, select(v_out < room, v_out, room)};
 }
 
 }  // namespace vitral

@@ -1,20 +1,82 @@
 // The rasterizer: which triangle does each pixel centre see. Only visibility is decided here; what
 // the surface is like at the pixel is computed once per visible pixel afterwards, from the camera
-// ray and the triangle, by the same formula as for traced rays.
+// ray and the triangle, by the same formula as for traced rays (kernels/visible.h).
 //
-// Stages (Laine and Karras, "High-Performance Software Rasterization on GPUs", HPG 2011): triangle
-// setup and binning over the whole frame (setup.h, bin.h), then fill, tile by tile (kernels/fill.cpp).
+// How to read this folder: this file (what the stages hand to each other), setup.cpp (vertices to
+// pixels, triangles to edges and planes), clip.cpp, bin.cpp, coverage.h (the fill rule), and then
+// kernels/fill.cpp, which fills one tile. The stages are those of Laine and Karras, "High-Performance
+// Software Rasterization on GPUs", HPG 2011.
+//
+// Screen coordinates: pixel (x, y) has its centre at (x + 0.5, y + 0.5), y down. Vertices are snapped
+// to 1/256 pixel; from there on coverage is integer arithmetic and exact. Depth is kept as its
+// inverse, 1/w, which is linear on the screen; greater is nearer.
 #pragma once
 #include "math/pinhole.h"
-#include "vitral/render.h"
-#include "vitral/scene.h"
+#include "vitral/ray.h"
 
 #include <cstdint>
 
 namespace vitral {
 
+struct KdTriangle;  // kdtree/kdtree.h
+struct CutOuts;
+
+inline constexpr int kSubpixelBits = 8;
+inline constexpr int kSubpixels = 1 << kSubpixelBits;
+
+// Triangles are clipped to this many pixels around the frame's corner (0, 0): far more than the
+// largest frame, so that few are. Snapped coordinates stay within 2^24 + 2^8, a
+// triangle's sides within 2^25 + 2^9, which fill.cpp relies on for its 32-bit sums.
+inline constexpr int kGuardBand = 65536;
+
 inline constexpr int kTileSide = 32;
-inline constexpr int kTileBlocks = (kTileSide / 8) * (kTileSide / 8);  // of 8x8 pixels, row by row
+inline constexpr int kTileBlocksAcross = kTileSide / 8;
+inline constexpr int kTileBlocks = kTileBlocksAcross * kTileBlocksAcross;  // of 8x8 pixels, row by row
+
+// Pixels [x0, x1) x [y0, y1).
+struct PixelBox {
+  int x0, y0, x1, y1;
+};
+
+// A triangle ready to be filled: of non-zero area, its corners in the order that makes the inside
+// positive for every edge. The plane gives the inverse depth at a point of the screen in pixels; it
+// belongs to the true triangle, not the snapped one, and the range is that of its visible corners.
+struct SetupTriangle {
+  int32_t x[3], y[3];         // 1/256 pixel
+  uint32_t triangle;          // number in Mesh::triangles; parts of a clipped triangle share it
+  float least, greatest;      // inverse depth
+  double across, down, at_0;  // inverse depth = across * x + down * y + at_0
+};
+static_assert(sizeof(SetupTriangle) == 64);
+
+// Bins are squares of 32, 128, 512, 2048 and 8192 pixels: a triangle goes to the bins of the finest
+// level of which it touches no more than kMaxBinsTouched, so that the memory is bounded whatever the
+// triangles' sizes. A tile reads one bin of each level. All bins are numbered in one sequence.
+inline constexpr int kBinLevels = 5;
+inline constexpr int kBinLevelShift = 2;  // the side grows by 2^2 from level to level
+inline constexpr int kMaxBinsTouched = 16;
+struct BinGrid {
+  int across[kBinLevels];          // bins in a row
+  uint32_t first_bin[kBinLevels];  // number of the level's bin (0, 0)
+  uint32_t bins;                   // of all levels
+};
+
+// Names a setup triangle: its chunk in the upper bits, its place there in the lower ones.
+using SetupReference = uint32_t;
+inline constexpr int kPlaceBits = 15;
+
+// The binned frame as the fill kernel sees it: pointers only.
+struct RasterView {
+  const SetupTriangle* const* chunks;
+  const SetupReference* references;
+  const uint64_t* first_reference;  // of bin b: [first_reference[b], first_reference[b + 1])
+  BinGrid grid;
+  PixelBox window;            // the pixels wanted; the others of a tile come out empty
+  float least_inverse_depth;  // 1 / far: what lies beyond is not seen
+  const Pinhole* camera;
+  const KdTriangle* triangles;  // by triangle number
+  const CutOuts* cut_outs;      // null: no triangle is a cut-out
+};
 
 // What a tile of 32x32 pixels sees, in blocks of 64 pixels, row by row inside and among blocks.
 struct alignas(64) TileVisibility {

@@ -1,0 +1,31 @@
+// Binning: which setup triangles a tile has to look at.
+#pragma once
+#include "raster/raster.h"
+#include "raster/setup.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+namespace vitral {
+
+// Runs body(i) once for every i in [0, count), in any order, on any threads.
+using ForEach = std::function<void(size_t count, const std::function<void(size_t)>& body)>;
+
+// Bins are anchored at the frame's corner (0, 0), whatever the crop.
+BinGrid make_grid(int width, int height);
+
+// Appends `place` to every bin that the box, which must not be empty, touches at the level it goes to.
+void add_to_bins(const BinGrid& grid, const PixelBox& box, uint32_t place, std::vector<BinEntry>& entries);
+
+struct Bins {
+  std::vector<uint64_t> first_reference;   // of every bin, and the end of the last
+  std::vector<SetupReference> references;  // in a bin: in the order of the mesh's triangles
+};
+
+// Sorts the entries of all chunks by bin (counting sort, stable). The result depends on nothing else.
+void merge_bins(const BinGrid& grid, const std::vector<SetupChunk>& chunks, const ForEach& for_each,
+                Bins& bins);
+
+}  // namespace vitral

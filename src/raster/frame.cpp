@@ -1,0 +1,42 @@
+#include "raster/frame.h"
+
+namespace vitral {
+
+void setup_frame(const Pinhole& camera, int width, int height, const Rectangle& crop, const Mesh& mesh,
+                 const ForEach& for_each, RasterFrame& frame) {
+  frame.projection = make_projection(camera, width, height, crop);
+  frame.grid = make_grid(width, height);
+
+  constexpr size_t per_piece = 16384;
+  const size_t vertices = mesh.positions.size();
+  frame.vertices.resize(vertices);
+  for_each((vertices + per_piece - 1) / per_piece, [&](size_t piece) {
+    const size_t begin = piece * per_piece;
+    const size_t count = begin + per_piece < vertices ? per_piece : vertices - begin;
+    project_vertices(frame.projection, mesh.positions.data() + begin, count, frame.vertices.data() + begin);
+  });
+
+  frame.chunks.resize(chunk_count(mesh.triangles.size()));
+  for_each(frame.chunks.size(), [&](size_t chunk) {
+    setup_chunk(frame.projection, frame.grid, mesh, frame.vertices.data(), chunk, frame.chunks[chunk]);
+  });
+  frame.chunk_triangles.clear();
+  for (const SetupChunk& chunk : frame.chunks) frame.chunk_triangles.push_back(chunk.triangles.data());
+
+  merge_bins(frame.grid, frame.chunks, for_each, frame.bins);
+}
+
+RasterView make_view(const RasterFrame& frame, const Pinhole& camera, const KdTriangle* triangles,
+                     const CutOuts* cut_outs) {
+  return {frame.chunk_triangles.data(),
+          frame.bins.references.data(),
+          frame.bins.first_reference.data(),
+          frame.grid,
+          frame.projection.window,
+          frame.projection.least_inverse_depth,
+          &camera,
+          triangles,
+          cut_outs};
+}
+
+}  // namespace vitral

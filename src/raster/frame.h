@@ -1,0 +1,31 @@
+// The whole frame's part of rasterization, before tiles go their own ways.
+#pragma once
+#include "raster/bin.h"
+#include "raster/raster.h"
+#include "raster/setup.h"
+
+#include <vector>
+
+namespace vitral {
+
+// Kept from frame to frame, so that the memory is.
+struct RasterFrame {
+  Projection projection;
+  BinGrid grid;
+  std::vector<ScreenVertex> vertices;
+  std::vector<SetupChunk> chunks;
+  std::vector<const SetupTriangle*> chunk_triangles;
+  Bins bins;
+};
+
+// Projects the vertices, sets up the triangles and bins them. Frames up to kMaxImageSide a side.
+void setup_frame(const Pinhole& camera, int width, int height, const Rectangle& crop, const Mesh& mesh,
+                 const ForEach& for_each, RasterFrame& frame);
+
+// What the fill kernel is given. Everything pointed to must outlive it, and the frame stay as it is.
+// `triangles` has one entry for each triangle of the mesh; it and `cut_outs` matter only to cut-outs
+// and may be null.
+RasterView make_view(const RasterFrame& frame, const Pinhole& camera, const KdTriangle* triangles,
+                     const CutOuts* cut_outs);
+
+}  // namespace vitral

@@ -1,0 +1,136 @@
+// What the rasterizer's tests share: cameras, a random source, and whole pictures of triangle numbers.
+#pragma once
+#include "kdtree/kdtree.h"
+#include "kernels/kernels.h"
+#include "raster/frame.h"
+#include "render/kernel_choice.h"
+#include "support.h"
+#include "vitral/scene.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace vitral {
+
+namespace raster_test {
+
+using test::Random;
+
+// A whole number in [low, high].
+inline int between(Random& random, int low, int high) {
+  return low + static_cast<int>(random.below(static_cast<uint32_t>(high - low + 1)));
+}
+
+// Looks along -z from the world's origin; the pixel of the point (x, -y, -1) is (x, y) exactly.
+inline Pinhole pixel_camera(float near = 0.125f, float far = 1e6f) {
+  return {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, -1}, 1, 0, 0, near, far};
+}
+// The point seen at (x, y) pixels by the camera above, at the given depth.
+inline Vec3 at_pixel(float x, float y, float depth) {
+  return {x * depth, -y * depth, -depth};
+}
+
+// An ordinary camera; `view` must have unit length and not be vertical.
+inline Pinhole make_camera(const Vec3& eye, const Vec3& view, int width, int height, float half_height,
+                           float near, float far) {
+  const Vec3 right = normalize(cross(view, Vec3{0, 1, 0}));
+  const Vec3 up = cross(right, view);
+  const float step = 2 * half_height / static_cast<float>(height);
+  return {eye, right, up, view, step, step * static_cast<float>(width) * 0.5f, half_height, near, far};
+}
+
+inline void in_order(size_t count, const std::function<void(size_t)>& body) {
+  for (size_t i = 0; i < count; ++i) body(i);
+}
+
+inline void add_triangle(Mesh& mesh, const Vec3& a, const Vec3& b, const Vec3& c) {
+  const uint32_t n = static_cast<uint32_t>(mesh.positions.size());
+  mesh.positions.insert(mesh.positions.end(), {a, b, c});
+  mesh.triangles.push_back({n, n + 1, n + 2});
+}
+
+inline std::vector<KdTriangle> kd_triangles(const Mesh& mesh, uint32_t flags = 0) {
+  std::vector<KdTriangle> out;
+  for (const Corners& c : mesh.triangles) {
+    KdTriangle t{};
+    for (size_t k = 0; k < 3; ++k) {
+      const Vec3& p = mesh.positions[c[k]];
+      t.corner[k][0] = p.x, t.corner[k][1] = p.y, t.corner[k][2] = p.z;
+    }
+    t.flags = flags;
+    out.push_back(t);
+  }
+  return out;
+}
+
+// What every pixel sees, row by row.
+struct Picture {
+  int width = 0, height = 0;
+  std::vector<uint32_t> triangle;
+  std::vector<float> inverse_depth;
+
+  uint32_t at(int x, int y) const { return triangle[static_cast<size_t>(y * width + x)]; }
+  float depth_at(int x, int y) const { return inverse_depth[static_cast<size_t>(y * width + x)]; }
+  size_t covered() const {
+    return triangle.size() - static_cast<size_t>(std::count(triangle.begin(), triangle.end(), kNoTriangle));
+  }
+};
+inline bool operator==(const Picture& a, const Picture& b) {
+  return a.width == b.width && a.triangle == b.triangle && a.inverse_depth == b.inverse_depth;
+}
+
+struct Options {
+  Rectangle crop{};
+  const KdTriangle* triangles = nullptr;
+  const CutOuts* cut_outs = nullptr;
+};
+
+inline Picture rasterize(const Kernels& kernels, const Pinhole& camera, int width, int height,
+                         const Mesh& mesh, const Options& options = {}) {
+  RasterFrame frame;
+  setup_frame(camera, width, height, options.crop, mesh, in_order, frame);
+  const RasterView view = make_view(frame, camera, options.triangles, options.cut_outs);
+  Picture picture{width, height, {}, {}};
+  picture.triangle.assign(static_cast<size_t>(width * height), kNoTriangle);
+  picture.inverse_depth.assign(picture.triangle.size(), 0.0f);
+  const auto tile = std::make_unique<TileVisibility>();
+  for (int ty = 0; ty * kTileSide < height; ++ty) {
+    for (int tx = 0; tx * kTileSide < width; ++tx) {
+      kernels.fill_tile(view, tx, ty, *tile);
+      for (int y = 0; y < kTileSide; ++y) {
+        for (int x = 0; x < kTileSide; ++x) {
+          const int px = tx * kTileSide + x, py = ty * kTileSide + y;
+          const size_t i =
+              static_cast<size_t>(((y / 8) * kTileBlocksAcross + x / 8) * kPacketSize + (y % 8) * 8 + x % 8);
+          if (px >= width || py >= height) continue;
+          const size_t p = static_cast<size_t>(py * width + px);
+          picture.triangle[p] = tile->triangle[i];
+          picture.inverse_depth[p] = tile->inverse_depth[i];
+        }
+      }
+    }
+  }
+  return picture;
+}
+
+// How many triangles cover each pixel when every one is filled alone.
+inline std::vector<int> count_coverage(const Kernels& kernels, const Pinhole& camera, int width, int height,
+                                       const Mesh& mesh) {
+  std::vector<int> count(static_cast<size_t>(width * height), 0);
+  Mesh one;
+  one.positions = mesh.positions;
+  for (const Corners& c : mesh.triangles) {
+    one.triangles = {c};
+    const Picture p = rasterize(kernels, camera, width, height, one);
+    for (size_t i = 0; i < count.size(); ++i) count[i] += p.triangle[i] != kNoTriangle;
+  }
+  return count;
+}
+
+}  // namespace raster_test
+}  // namespace vitral
