@@ -226,7 +226,7 @@ TEST(RasterFill, WhatLiesBeyondFarOrBeforeNearIsNotSeen) {
 TEST(RasterFill, HostileTrianglesDoNoHarm) {
   constexpr int size = 70;
   Random random(37);
-  const float near = 0.125f;
+  constexpr float near = 0.125f;
   size_t covered = 0;
   for (int round = 0; round < 120; ++round) {
     Mesh mesh;
