@@ -2,6 +2,7 @@
 #pragma once
 #include "kdtree/kdtree.h"
 #include "kernels/kernels.h"
+#include "parallel/parallel_for.h"
 #include "raster/frame.h"
 #include "render/kernel_choice.h"
 #include "support.h"
@@ -90,10 +91,9 @@ struct Options {
   const CutOuts* cut_outs = nullptr;
 };
 
-inline Picture rasterize(const Kernels& kernels, const Pinhole& camera, int width, int height,
-                         const Mesh& mesh, const Options& options = {}) {
-  RasterFrame frame;
-  setup_frame(camera, width, height, options.crop, mesh, in_order, frame);
+// Fills all tiles of a frame that is set up.
+inline Picture fill_frame(const Kernels& kernels, const Pinhole& camera, int width, int height,
+                          const RasterFrame& frame, const Options& options = {}) {
   const RasterView view = make_view(frame, camera, options.triangles, options.cut_outs);
   Picture picture{width, height, {}, {}};
   picture.triangle.assign(static_cast<size_t>(width * height), kNoTriangle);
@@ -116,6 +116,13 @@ inline Picture rasterize(const Kernels& kernels, const Pinhole& camera, int widt
     }
   }
   return picture;
+}
+
+inline Picture rasterize(const Kernels& kernels, const Pinhole& camera, int width, int height,
+                         const Mesh& mesh, const Options& options = {}) {
+  RasterFrame frame;
+  setup_frame(camera, width, height, options.crop, mesh, in_order, frame);
+  return fill_frame(kernels, camera, width, height, frame, options);
 }
 
 // How many triangles cover each pixel when every one is filled alone.

@@ -1,0 +1,305 @@
+// Which of several triangles a pixel sees, and that nothing else can be seen: not the order of the
+// triangles, the crop, the threads or the instruction set.
+#include "raster_support.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace vitral {
+namespace {
+
+using namespace raster_test;
+
+// Triangles of all sizes in front of, around and behind pixel_camera().
+Mesh soup(Random& random, int count, float depth_from, float depth_to) {
+  Mesh mesh;
+  for (int i = 0; i < count; ++i) {
+    const float size = std::array{0.5f, 3.0f, 20.0f, 200.0f, 5000.0f, 300000.0f}[random.below(6)];
+    const float x = random.between(-20, 120), y = random.between(-20, 120);
+    Vec3 p[3];
+    for (Vec3& v : p) {
+      const float dx = random.between(-size, size), dy = random.between(-size, size);
+      v = at_pixel(x + dx, y + dy, random.between(depth_from, depth_to));
+    }
+    add_triangle(mesh, p[0], p[1], p[2]);
+  }
+  return mesh;
+}
+
+// The inverse depth of a triangle's plane on the ray through a pixel's centre, in double.
+double plane_inverse_depth(const Mesh& mesh, uint32_t triangle, const Pinhole& camera, int x, int y) {
+  const Corners& c = mesh.triangles[triangle];
+  const Vec3d a = to_double(mesh.positions[c[0]] - camera.origin);
+  const Vec3d b = to_double(mesh.positions[c[1]] - camera.origin);
+  const Vec3d d = to_double(mesh.positions[c[2]] - camera.origin);
+  const Vec3d n = cross(b - a, d - a);
+  return dot(n, to_double(primary_direction(camera, static_cast<float>(x), static_cast<float>(y)))) /
+         dot(n, a);
+}
+
+TEST(RasterFill, TheNearestTriangleWins) {
+  constexpr int size = 100;
+  Random random(31);
+  size_t compared = 0, contested = 0;
+  for (int round = 0; round < 6; ++round) {
+    const Mesh mesh = soup(random, 40, 1, 60);
+    const Pinhole camera = pixel_camera();
+    const Kernels& kernels = *available_kernels()[static_cast<size_t>(round) % available_kernels().size()];
+    const Picture whole = rasterize(kernels, camera, size, size, mesh);
+    std::vector<Picture> alone;
+    for (const Corners& c : mesh.triangles) {
+      Mesh one;
+      one.positions = mesh.positions;
+      one.triangles = {c};
+      alone.push_back(rasterize(kernels, camera, size, size, one));
+    }
+    for (int y = 0; y < size; ++y) {
+      for (int x = 0; x < size; ++x) {
+        uint32_t best = kNoTriangle;
+        float depth = 0;
+        int layers = 0;
+        for (uint32_t i = 0; i < alone.size(); ++i) {
+          if (alone[i].at(x, y) == kNoTriangle) continue;
+          ++layers;
+          if (alone[i].depth_at(x, y) > depth) depth = alone[i].depth_at(x, y), best = i;
+        }
+        ASSERT_EQ(whole.at(x, y), best) << x << "," << y;
+        ASSERT_EQ(whole.depth_at(x, y), depth);
+        ++compared;
+        contested += layers > 1;
+      }
+    }
+  }
+  EXPECT_EQ(compared, 60000u);
+  EXPECT_GT(contested, 40000u);
+}
+
+TEST(RasterFill, DepthIsThatOfTheTruePlane) {
+  constexpr int size = 100;
+  Random random(32);
+  const Mesh mesh = soup(random, 400, 1, 60);
+  const Picture p = rasterize(*available_kernels().back(), pixel_camera(), size, size, mesh);
+  size_t close = 0, covered = 0;
+  for (int y = 0; y < size; ++y) {
+    for (int x = 0; x < size; ++x) {
+      if (p.at(x, y) == kNoTriangle) continue;
+      ++covered;
+      const double expected = plane_inverse_depth(mesh, p.at(x, y), pixel_camera(), x, y);
+      close += std::abs(static_cast<double>(p.depth_at(x, y)) - expected) <= 1e-6 * expected;
+    }
+  }
+  EXPECT_GT(covered, 9000u);
+  EXPECT_GT(static_cast<double>(close),
+            0.99 * static_cast<double>(covered));  // but for clamps at slivers' rims
+}
+
+TEST(RasterFill, EqualDepthGoesToTheLowerNumberInAnyOrder) {
+  constexpr int size = 64;
+  Random random(33);
+  // Every triangle several times, some rotated, among others; the copies have higher numbers.
+  Mesh mesh = soup(random, 60, 2, 30);
+  const size_t originals = mesh.triangles.size();
+  for (int copy = 0; copy < 3; ++copy) {
+    for (size_t i = 0; i < originals; ++i) mesh.triangles.push_back(mesh.triangles[i]);
+  }
+  const Pinhole camera = pixel_camera();
+  RasterFrame frame;
+  setup_frame(camera, size, size, {}, mesh, in_order, frame);
+  const Kernels& kernels = *available_kernels().back();
+  const Picture expected = fill_frame(kernels, camera, size, size, frame);
+  size_t covered = 0;
+  for (const uint32_t t : expected.triangle) {
+    if (t == kNoTriangle) continue;
+    ASSERT_LT(t, originals);
+    ++covered;
+  }
+  EXPECT_GT(covered, 3000u);
+  for (int shuffle = 0; shuffle < 8; ++shuffle) {
+    for (size_t bin = 0; bin + 1 < frame.bins.first_reference.size(); ++bin) {
+      const uint64_t first = frame.bins.first_reference[bin], end = frame.bins.first_reference[bin + 1];
+      for (uint64_t i = first; i < end; ++i) {
+        const uint64_t other = first + random.below(static_cast<uint32_t>(end - first));
+        std::swap(frame.bins.references[i], frame.bins.references[other]);
+      }
+    }
+    ASSERT_TRUE(fill_frame(kernels, camera, size, size, frame) == expected) << shuffle;
+  }
+}
+
+TEST(RasterFill, InstructionSetsGiveTheSameBytes) {
+  Random random(34);
+  for (int round = 0; round < 8; ++round) {
+    const Mesh mesh = soup(random, 300, round % 2 == 0 ? 1.0f : -20.0f, 40);
+    const Picture expected = rasterize(*available_kernels().front(), pixel_camera(), 150, 70, mesh);
+    EXPECT_GT(expected.covered(), 5000u);
+    for (const Kernels* kernels : available_kernels()) {
+      ASSERT_TRUE(rasterize(*kernels, pixel_camera(), 150, 70, mesh) == expected) << kernels->isa;
+    }
+  }
+}
+
+TEST(RasterFill, ACropGivesTheSamePixels) {
+  constexpr int width = 140, height = 100;
+  Random random(35);
+  const Mesh mesh = soup(random, 500, 0.5f, 40);
+  const Kernels& kernels = *available_kernels().back();
+  const Picture whole = rasterize(kernels, pixel_camera(), width, height, mesh);
+  size_t inside = 0;
+  for (int round = 0; round < 60; ++round) {
+    const int x0 = between(random, 0, width - 1), y0 = between(random, 0, height - 1);
+    const Rectangle crop{x0, y0, between(random, 1, width - x0), between(random, 1, height - y0)};
+    Options options;
+    options.crop = crop;
+    const Picture part = rasterize(kernels, pixel_camera(), width, height, mesh, options);
+    for (int y = 0; y < height; ++y) {
+      for (int x = 0; x < width; ++x) {
+        const bool wanted = x >= crop.x && x < crop.x + crop.width && y >= crop.y && y < crop.y + crop.height;
+        ASSERT_EQ(part.at(x, y), wanted ? whole.at(x, y) : kNoTriangle) << x << "," << y;
+        ASSERT_EQ(part.depth_at(x, y), wanted ? whole.depth_at(x, y) : 0.0f);
+        inside += wanted && part.at(x, y) != kNoTriangle;
+      }
+    }
+  }
+  EXPECT_GT(inside, 30000u);
+}
+
+TEST(RasterFill, TheOrderOfTheWorkDoesNotMatter) {
+  Random random(36);
+  Mesh mesh = soup(random, 500, 0.5f, 40);
+  while (mesh.triangles.size() < 5 * kChunkTriangles) {
+    mesh.triangles.insert(mesh.triangles.end(), mesh.triangles.begin(), mesh.triangles.begin() + 500);
+  }
+  RasterFrame expected, backwards, threaded;
+  setup_frame(pixel_camera(), 200, 200, {}, mesh, in_order, expected);
+  setup_frame(
+      pixel_camera(), 200, 200, {}, mesh,
+      [](size_t count, const std::function<void(size_t)>& body) {
+        while (count-- > 0) body(count);
+      },
+      backwards);
+  ThreadPool pool(3);
+  setup_frame(
+      pixel_camera(), 200, 200, {}, mesh,
+      [&](size_t count, const std::function<void(size_t)>& body) {
+        pool.parallel_for(count, [&](size_t i, size_t) { body(i); });
+      },
+      threaded);
+  EXPECT_GT(expected.bins.references.size(), 20000u);
+  for (const RasterFrame* frame : {&backwards, &threaded}) {
+    EXPECT_EQ(frame->bins.first_reference, expected.bins.first_reference);
+    EXPECT_EQ(frame->bins.references, expected.bins.references);
+  }
+  EXPECT_TRUE(std::is_sorted(
+      expected.bins.references.begin(),
+      expected.bins.references.begin() + static_cast<std::ptrdiff_t>(expected.bins.first_reference[1])));
+}
+
+TEST(RasterFill, WhatLiesBeyondFarOrBeforeNearIsNotSeen) {
+  // A wall that runs from depth 1 on the left to depth 100 on the right.
+  Mesh mesh;
+  add_triangle(mesh, at_pixel(0, -64, 1), at_pixel(64, 32, 100), at_pixel(0, 128, 1));
+  const Picture all = rasterize(*available_kernels().front(), pixel_camera(0.5f, 1e6f), 64, 64, mesh);
+  const Picture some = rasterize(*available_kernels().front(), pixel_camera(1.5f, 5), 64, 64, mesh);
+  size_t before = 0, between_them = 0, beyond = 0;
+  for (int y = 0; y < 64; ++y) {
+    for (int x = 0; x < 64; ++x) {
+      if (all.at(x, y) == kNoTriangle) continue;
+      const float depth = 1 / all.depth_at(x, y);
+      if (depth < 1.49f || depth > 5.01f) {
+        EXPECT_EQ(some.at(x, y), kNoTriangle) << depth;
+        (depth < 2 ? before : beyond) += 1;
+      } else if (depth > 1.51f && depth < 4.99f) {
+        EXPECT_EQ(some.at(x, y), 0u) << depth;
+        EXPECT_EQ(some.depth_at(x, y), all.depth_at(x, y));
+        ++between_them;
+      }
+    }
+  }
+  EXPECT_GT(before, 500u);
+  EXPECT_GT(between_them, 500u);
+  EXPECT_GT(beyond, 20u);
+}
+
+TEST(RasterFill, HostileTrianglesDoNoHarm) {
+  constexpr int size = 70;
+  Random random(37);
+  constexpr float near = 0.125f;
+  size_t covered = 0;
+  for (int round = 0; round < 120; ++round) {
+    Mesh mesh;
+    const auto coordinate = [&]() -> float {
+      constexpr std::array<float, 12> odd{0,     -0.0f,  1,      -1,     near, -near,
+                                          1e18f, -1e18f, 1e-30f, 1e-45f, 64,   1e9f};
+      return random.below(3) == 0 ? random.between(-100, 100) : odd[random.below(odd.size())];
+    };
+    for (int i = 0; i < 200; ++i) {
+      Vec3 p[3];
+      for (Vec3& v : p) {
+        const float x = coordinate(), y = coordinate(), z = coordinate();
+        v = {x, y, z};
+      }
+      if (random.below(6) == 0) p[1] = p[0];
+      add_triangle(mesh, p[0], p[1], p[2]);
+    }
+    const Pinhole camera = pixel_camera(near, random.below(2) == 0 ? 1e6f : 1e30f);
+    const Picture expected = rasterize(*available_kernels().front(), camera, size, size, mesh);
+    for (size_t i = 0; i < expected.triangle.size(); ++i) {
+      if (expected.triangle[i] == kNoTriangle) {
+        ASSERT_EQ(expected.inverse_depth[i], 0.0f);
+        continue;
+      }
+      ASSERT_LT(expected.triangle[i], mesh.triangles.size());
+      ASSERT_TRUE(expected.inverse_depth[i] > 0 && expected.inverse_depth[i] <= 1 / near);
+      ++covered;
+    }
+    for (const Kernels* kernels : available_kernels()) {
+      ASSERT_TRUE(rasterize(*kernels, camera, size, size, mesh) == expected)
+          << kernels->isa << " round " << round;
+    }
+  }
+  EXPECT_GT(covered, 100000u);
+}
+
+TEST(RasterFill, VerticesThatAreNotFiniteAreLeftOut) {
+  const float inf = std::numeric_limits<float>::infinity(), nan = std::numeric_limits<float>::quiet_NaN();
+  for (const float bad : {inf, -inf, nan}) {
+    Mesh mesh;
+    add_triangle(mesh, {bad, bad, bad}, at_pixel(0, 0, 1), at_pixel(64, 0, 1));
+    add_triangle(mesh, {0, bad, 1}, {bad, 0, -1}, at_pixel(64, 0, 1));
+    add_triangle(mesh, {0, 0, bad}, {1, 0, bad}, {0, 1, bad});
+    add_triangle(mesh, at_pixel(0, 0, 5), at_pixel(64, 0, 5), at_pixel(0, 64, 5));
+    const Picture p = rasterize(*available_kernels().front(), pixel_camera(), 64, 64, mesh);
+    EXPECT_EQ(p.at(10, 10), 3u);
+    EXPECT_EQ(p.covered(), 64u * 65 / 2 - 64);
+  }
+}
+
+TEST(RasterFill, NothingToDrawIsAnEmptyPicture) {
+  const Picture p = rasterize(*available_kernels().back(), pixel_camera(), 33, 1, Mesh{});
+  EXPECT_EQ(p.triangle.size(), 33u);
+  EXPECT_EQ(p.covered(), 0u);
+}
+
+TEST(RasterFill, MemoryOfTheBinsIsBounded) {
+  // Each of these covers all of the largest frame.
+  Mesh mesh;
+  for (int i = 0; i < 1000; ++i) {
+    const float depth = 1 + static_cast<float>(i);
+    add_triangle(mesh, at_pixel(-1, -1, depth), at_pixel(40000, -1, depth), at_pixel(-1, 40000, depth));
+  }
+  RasterFrame frame;
+  setup_frame(pixel_camera(), kMaxImageSide, kMaxImageSide, {}, mesh, in_order, frame);
+  EXPECT_GE(frame.bins.references.size(), 1000u);
+  EXPECT_LE(frame.bins.references.size(), 1000u * kMaxBinsTouched);
+  const Pinhole camera = pixel_camera();
+  const RasterView view = make_view(frame, camera, nullptr, nullptr);
+  const auto tile = std::make_unique<TileVisibility>();
+  available_kernels().back()->fill_tile(view, 511, 511, *tile);
+  EXPECT_EQ(tile->triangle[1023], 0u);
+}
+
+}  // namespace
+}  // namespace vitral
