@@ -86,6 +86,13 @@ double ground_floor(Mesh& mesh, const Frame& f, const Building& b) {
     const uint32_t id = hash(b.seed, static_cast<uint32_t>(i), 5);
     const double x0 = i * b.bay, x1 = x0 + b.bay, middle = 0.5 * (x0 + x1);
     const bool shop = b.ground == Ground::shops && i % 3 != 1;
+    if (b.ground == Ground::cafe) {
+      const Hole wide{x0 + 0.38, x1 - 0.38, i == 1 ? 0.16 : 0.42, 3.72};
+      wall_around(mesh, Surface::ashlar, f, x0, x1, plinth, height, wide);
+      fill_hole(mesh, f, wide, {Filling::cafe, Surface::paint_green, b.finish, id});
+      surround(mesh, f, wide, Surround::plain);
+      continue;
+    }
     const double half = shop ? 1.05 : 0.8;
     const Hole hole{middle - half, middle + half, plinth + 0.14, 3.5};
     wall_around(mesh, Surface::ashlar, f, x0, x1, plinth, height, hole);
@@ -95,7 +102,7 @@ double ground_floor(Mesh& mesh, const Frame& f, const Building& b) {
     if (shop && b.finish == Finish::fine && unit(hash(id, 9)) < 0.6)
       shop_awning(mesh, f, x0 + 0.35, x1 - 0.35, 3.62);
   }
-  box(mesh, Surface::stone, f, {0, 0.0, 0}, {width, 0.0, 0.05}, 0);
+  if (b.ground == Ground::cafe) cafe(mesh, moved(f, {0, 0.16, 0}), width, 3.9, 5.5);
   return height;
 }
 

@@ -93,6 +93,7 @@ void ground(Mesh& mesh, const Plan& plan) {
   // The roadway lies under everything, far beyond the houses.
   level_field(mesh, Surface::setts, walls.x0 - 60, walls.x1 + 60, walls.z0 - 60, walls.z1 + 90, 0);
   rails(mesh, road.z1 - 1.9, walls.x0 - 40, walls.x1 + 4);
+  rails(mesh, road.z0 + 3.7, walls.x0 - 40, walls.x1 + 4);
   rails(mesh, island.z1 + 1.5, walls.x0 - 40, walls.x1 + 4);
 
   // The island: kerb, frieze, then the wide sea. The compass rose is laid on it, one stone high.

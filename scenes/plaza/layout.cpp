@@ -1,6 +1,7 @@
 // Where everything stands. North is +z, east is +x; the sun comes from the south-west.
 #include "layout.h"
 
+#include <utility>
 #include <vector>
 
 #include "parts.h"
@@ -58,7 +59,7 @@ void houses(Mesh& mesh, const Plan& plan) {
       {house(5, 3.2, Surface::plaster_white, Surface::paint_green, Ground::shops, 4, 1.0, 81),
        house(4, 3.3, Surface::plaster_rose, Surface::paint_white, Ground::shops, 4, 1.04, 82),
        house(5, 3.1, Surface::azulejo, Surface::paint_white, Ground::shops, 4, 0.98, 83),
-       house(4, 3.4, Surface::plaster_white, Surface::paint_red, Ground::shops, 4, 1.05, 84),
+       house(4, 3.4, Surface::plaster_white, Surface::paint_green, Ground::cafe, 4, 1.05, 84),
        house(4, 3.2, Surface::plaster_blue, Surface::paint_white, Ground::doors, 3, 1.08, 85),
        house(4, 3.3, Surface::plaster_ochre, Surface::paint_green, Ground::shops, 4, 1.0, 86),
        house(5, 3.2, Surface::plaster_rose, Surface::paint_white, Ground::doors, 4, 1.06, 87)});
@@ -78,13 +79,15 @@ void houses(Mesh& mesh, const Plan& plan) {
        plain(house(5, 3.2, Surface::plaster_rose, Surface::paint_white, Ground::shops, 4, 0.92, 94)),
        plain(house(5, 3.2, Surface::plaster_green, Surface::paint_white, Ground::shops, 3, 1.0, 95))});
 
-  // The south side is open: a low gallery with a terrace, and houses on the far side of a street.
+  // The south side is open: two low galleries with terraces, and houses beyond a street.
   begin_group(mesh, "south");
-  const Frame gallery = wall_frame({plan.west + 8, plan.curb, plan.south}, 0);
-  const int bays = 15;
-  const double bay = 3.6, top = arcade(mesh, gallery, bays, bay, Finish::plain);
-  box(mesh, Surface::stone, gallery, {-0.1, top - 0.02, -4.4}, {bays * bay + 0.1, top + 0.2, 0.25});
-  balustrade(mesh, moved(gallery, {0, top + 0.2, 0}), 0, bays * bay);
+  const double bay = 3.6;
+  for (const auto& [west_end, bays] : {std::pair{plan.west + 8, 4}, std::pair{28.0, 5}}) {
+    const Frame gallery = wall_frame({west_end, plan.curb, plan.south}, 0);
+    const double top = arcade(mesh, gallery, bays, bay, Finish::plain);
+    box(mesh, Surface::stone, gallery, {-0.1, top - 0.02, -4.4}, {bays * bay + 0.1, top + 0.2, 0.25});
+    balustrade(mesh, moved(gallery, {0, top + 0.2, 0}), 0, bays * bay);
+  }
   row(mesh, wall_frame({plan.west - 8, 0, plan.south - 20}, 0),
       {plain(house(6, 3.3, Surface::plaster_rose, Surface::paint_white, Ground::doors, 4, 0.95, 96)),
        plain(house(6, 3.2, Surface::plaster_white, Surface::paint_white, Ground::doors, 3, 1.0, 97)),
@@ -134,6 +137,8 @@ void furniture(Mesh& mesh, const Plan& plan) {
   const double inset = plan.sidewalk - 0.75;
   for (int i = 0; i < 22; ++i) bollard(mesh, at(plan.east - inset, plan.south + 9 + 2.4 * i, 0));
   for (int i = 0; i < 24; ++i) bollard(mesh, at(plan.east - 12 - 2.4 * i, plan.north - inset, 0));
+  for (int i = 0; i < 19; ++i)
+    bollard(mesh, at(-11 + 2.4 * i, plan.south + plan.sidewalk + plan.road + 0.7, 0));
   begin_group(mesh, "cafe");
   for (uint32_t i = 0; i < 5; ++i)
     cafe_table(mesh, at(28.2 + 2.9 * (i % 2) + 0.5 * (i / 2), 9.5 + 2.9 * (i / 2), 31.0 * i), i);
@@ -197,6 +202,7 @@ void lay_out(Mesh& mesh) {
   greenery(mesh, plan);
   furniture(mesh, plan);
   life(mesh, plan);
+  tram(mesh, turned(at(23.2, 0, plan.south + plan.sidewalk + 3.7), 180));
   tram(mesh, turned(at(27, 0, plan.north - plan.sidewalk - plan.road + 1.5), 0));
 }
 

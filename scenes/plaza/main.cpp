@@ -7,10 +7,12 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <functional>
 #include <future>
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "layout.h"
 #include "materials.h"
@@ -54,17 +56,16 @@ void generate(const Arguments& arguments) {
   std::filesystem::create_directories(arguments.folder);
   // Pictures and geometry are independent of each other.
   const plaza::TextureJob job{arguments.folder, arguments.detail.level < 0.5 ? 2 : 1};
-  auto painters = std::async(std::launch::async, [&job] {
-    plaza::paint_ground_textures(job);
-    plaza::paint_wall_textures(job);
-    plaza::paint_wood_textures(job);
-    plaza::paint_leaf_textures(job);
-  });
+  std::vector<std::future<void>> painters;
+  for (const auto paint : {plaza::paint_ground_textures, plaza::paint_wall_textures,
+                           plaza::paint_wood_textures, plaza::paint_leaf_textures}) {
+    painters.push_back(std::async(std::launch::async, paint, std::cref(job)));
+  }
   plaza::Mesh mesh;
   mesh.detail = arguments.detail;
   plaza::lay_out(mesh);
   plaza::write_materials(arguments.folder / "plaza.mtl");
-  painters.get();
+  for (auto& painter : painters) painter.get();
   // Last, because it is what make waits for.
   plaza::write_obj(mesh, arguments.folder / "plaza.obj");
   std::printf("%s: %zu triangles\n", (arguments.folder / "plaza.obj").string().c_str(),

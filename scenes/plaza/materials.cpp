@@ -15,7 +15,7 @@ struct Row {
 
 // Kd of a textured surface is 1: the texture holds its whole colour.
 constexpr Row kTable[] = {
-    {"CalcadaOndas", 6.4, "Kd 1 1 1;illum 1;map_Kd calcada_wave.png"},
+    {"CalcadaOndas", 8.0, "Kd 1 1 1;illum 1;map_Kd calcada_wave.png"},
     {"Calcada", 3.2, "Kd 1 1 1;illum 1;map_Kd calcada_plain.png"},
     {"CalcadaFriso", 1.6, "Kd 1 1 1;illum 1;map_Kd calcada_frieze.png"},
     {"RosaDosVentos", 1, "Kd 1 1 1;illum 1;map_Kd rosette.png"},
@@ -44,6 +44,7 @@ constexpr Row kTable[] = {
     {"Soalho", 2.0, "Kd 0.8 0.8 0.8;illum 1;map_Kd boards.png"},
     {"Cortina", 1, "Kd 0.66 0.64 0.58;illum 1"},
     {"CortinaQuente", 1, "Kd 0.50 0.27 0.17;illum 1"},
+    {"Espelho", 1, "Kd 0.05 0.05 0.05;Ks 0.82 0.84 0.83;Ns 400;Ni 2.5;illum 3"},
     {"Globo", 1, "Kd 0.80 0.79 0.74;Ks 1 1 1;Ns 200;Ni 1.5;illum 5"},
     {"Agua", 1, "Kd 0.01 0.03 0.03;Ks 1 1 1;Ns 400;Ni 1.33;Tf 0.82 0.92 0.93;illum 7"},
     {"Espuma", 1, "Kd 0.80 0.86 0.88;Ks 0.5 0.5 0.5;Ns 100;illum 2"},
@@ -56,7 +57,7 @@ constexpr Row kTable[] = {
     {"Toldo", 1.6, "Kd 1 1 1;illum 1;map_Kd awning.png"},
     {"Lona", 1, "Kd 0.74 0.70 0.60;illum 1"},
     {"EletricoAmarelo", 1, "Kd 0.80 0.53 0.03;Ks 0.5 0.5 0.5;Ns 150;Ni 1.5;illum 5"},
-    {"EletricoCreme", 1, "Kd 0.74 0.70 0.58;Ks 0.5 0.5 0.5;Ns 150;Ni 1.5;illum 5"},
+    {"EletricoCreme", 1, "Kd 0.62 0.60 0.53;Ks 0.5 0.5 0.5;Ns 150;Ni 1.5;illum 5"},
     {"Borracha", 1, "Kd 0.04 0.04 0.04;illum 1"},
     {"PanoAzul", 1, "Kd 0.09 0.14 0.28;illum 1"},
     {"PanoVermelho", 1, "Kd 0.48 0.08 0.07;illum 1"},
@@ -67,7 +68,7 @@ constexpr Row kTable[] = {
     {"LongeOcre", 1, "Kd 0.62 0.54 0.45;illum 1"},
     {"LongeTelha", 1, "Kd 0.50 0.34 0.29;illum 1"},
     {"LongeColina", 1, "Kd 0.30 0.37 0.31;illum 1"},
-    {"LongePedra", 1, "Kd 0.55 0.53 0.50;illum 1"},
+    {"LongePedra", 1, "Kd 0.50 0.455 0.39;illum 1"},
 };
 static_assert(std::size(kTable) == static_cast<size_t>(Surface::count));
 

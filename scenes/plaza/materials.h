@@ -35,6 +35,7 @@ enum class Surface : uint8_t {
   floorboards,
   curtain,
   curtain_warm,
+  mirror,
   globe,
   water,
   foam,

@@ -19,7 +19,7 @@ struct Hole {
   double x0, x1, y0, y1;
 };
 
-enum class Filling { casement, shopfront, door };
+enum class Filling { casement, shopfront, door, cafe };
 struct Joinery {
   Filling filling = Filling::casement;
   Surface paint = Surface::paint_white;
@@ -37,6 +37,13 @@ void railing(Mesh& mesh, const Frame& frame, double x0, double x1, double spacin
 void balustrade(Mesh& mesh, const Frame& frame, double x0, double x1);
 void shop_awning(Mesh& mesh, const Frame& wall, double x0, double x1, double y);
 
+// What is seen behind a window, behind a shop's pane, and behind the panes of a whole ground floor.
+inline constexpr double kReveal = 0.24;  // metres from the wall's face to the joinery
+inline constexpr double kRoom = 2.2;     // depth of a room
+void furnish_room(Mesh& mesh, const Frame& wall, const Hole& hole, uint32_t seed);
+void furnish_shop(Mesh& mesh, const Frame& wall, const Hole& hole, uint32_t seed);
+void cafe(Mesh& mesh, const Frame& wall, double width, double height, double depth);
+
 struct Storey {
   double height;
   double sill, head, width;  // the hole: from the storey's floor, and its width
@@ -45,7 +52,7 @@ struct Storey {
   enum class Balcony { none, iron } balcony = Balcony::none;
 };
 
-enum class Ground { shops, doors, arcade };
+enum class Ground { shops, doors, arcade, cafe };
 enum class Crown { tiles, balustrade };
 
 struct Building {
@@ -102,6 +109,7 @@ void street_lamp(Mesh& mesh, const Frame& frame);
 void bench(Mesh& mesh, const Frame& frame);
 void bollard(Mesh& mesh, const Frame& frame);
 void kiosk(Mesh& mesh, const Frame& frame);
+void chair(Mesh& mesh, const Frame& frame, Surface paint);
 void cafe_table(Mesh& mesh, const Frame& frame, uint32_t seed);
 void tram(Mesh& mesh, const Frame& frame);
 enum class Species { plane, jacaranda };

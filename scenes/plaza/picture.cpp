@@ -39,7 +39,9 @@ double noise(double u, double v, int period, uint32_t seed) {
   const int i = static_cast<int>(std::floor(x)), j = static_cast<int>(std::floor(y));
   const double fx = x - i, fy = y - j;
   const double sx = fx * fx * (3 - 2 * fx), sy = fy * fy * (3 - 2 * fy);
-  const auto lattice = [&](int a, int b) { return unit(hash(modulo(a, period), modulo(b, period), seed)); };
+  const auto lattice = [&](int a, int b) {
+    return unit(hash((modulo(a, period) | modulo(b, period) << 12) + seed * 0x9e3779b1u));
+  };
   const double low = lattice(i, j) + (lattice(i + 1, j) - lattice(i, j)) * sx;
   const double high = lattice(i, j + 1) + (lattice(i + 1, j + 1) - lattice(i, j + 1)) * sx;
   return low + (high - low) * sy;

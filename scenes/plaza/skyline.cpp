@@ -125,17 +125,17 @@ void skyline(Mesh& mesh, const Plan& plan) {
   Frame toward;  // looks back at the square
   toward = turned(toward, 180);
   const auto on_hill = [&](double x, double z) { return moved(toward, {-x, hill_height(hill, x, z), -z}); };
-  castle(mesh, turned(on_hill(hill.center.x, hill.center.z - 8), 12));
+  castle(mesh, turned(moved(on_hill(hill.center.x, hill.center.z - 8), {0, 3, 0}), 12));
   const int count = many(mesh.detail, 190, 40);
   Random random{4711, 0};
   for (int i = 0; i < std::min(count, 600); ++i) {
-    const double x = hill.center.x + between(random, -190, 190), z = hill.center.z - between(random, 26, 130);
+    const double x = hill.center.x + between(random, -190, 190), z = hill.center.z - between(random, 34, 130);
     if (z < plan.north + 70) continue;
     const uint32_t id = hash(900, static_cast<uint32_t>(i));
     far_house(mesh, turned(on_hill(x, z), between(random, -35, 35)), between(random, 3.5, 8),
               between(random, 3, 5), between(random, 6, 11), id);
   }
-  church(mesh, turned(moved(toward, {16, 0, -(plan.north + 85)}), 8));
+  church(mesh, turned(moved(toward, {-9, 0, -(plan.north + 85)}), 8));
 }
 
 }  // namespace plaza

@@ -83,6 +83,18 @@ void bollard(Mesh& mesh, const Frame& f) {
         divisions(mesh.detail, 10, 5));
 }
 
+// The sitter looks along -z.
+void chair(Mesh& mesh, const Frame& f, Surface paint) {
+  for (const double x : {-0.19, 0.19}) {
+    for (const double z : {-0.19, 0.19}) {
+      box(mesh, Surface::iron, f, {x - 0.015, 0, z - 0.015}, {x + 0.015, z > 0 ? 0.88 : 0.45, z + 0.015},
+          kOnGround);
+    }
+  }
+  box(mesh, paint, f, {-0.22, 0.45, -0.22}, {0.22, 0.48, 0.17});
+  box(mesh, paint, f, {-0.17, 0.66, 0.176}, {0.17, 0.86, 0.204});
+}
+
 void cafe_table(Mesh& mesh, const Frame& f, uint32_t seed) {
   const int around = divisions(mesh.detail, 14, 6);
   lathe(mesh, Surface::steel, f,
@@ -92,14 +104,8 @@ void cafe_table(Mesh& mesh, const Frame& f, uint32_t seed) {
         kPi / 8);
   for (int i = 0; i < 3; ++i) {
     const double angle = 120.0 * i + 50 * unit(hash(seed, static_cast<uint32_t>(i)));
-    const Frame chair = moved(turned(f, angle), {0, 0, 0.72});
-    for (const double x : {-0.19, 0.19}) {
-      for (const double z : {-0.19, 0.19})
-        box(mesh, Surface::iron, chair, {x - 0.015, 0, z - 0.015},
-            {x + 0.015, z > 0 ? 0.88 : 0.45, z + 0.015}, kOnGround);
-    }
-    box(mesh, Surface::paint_red, chair, {-0.22, 0.45, -0.22}, {0.22, 0.48, 0.17});
-    box(mesh, Surface::paint_red, chair, {-0.17, 0.66, 0.176}, {0.17, 0.86, 0.204});
+    const Frame chair_frame = moved(turned(f, angle), {0, 0, 0.72});
+    chair(mesh, chair_frame, Surface::paint_red);
   }
 }
 

@@ -11,9 +11,9 @@
 namespace plaza {
 namespace {
 
-constexpr Color kLimestone{0.80, 0.765, 0.69};
-constexpr Color kBasalt{0.235, 0.235, 0.245};
-constexpr Color kJoint{0.47, 0.44, 0.39};
+constexpr Color kLimestone{0.845, 0.81, 0.735};
+constexpr Color kBasalt{0.335, 0.335, 0.345};
+constexpr Color kJoint{0.52, 0.49, 0.44};
 
 using Drawing = std::function<double(double u, double v)>;  // 0 is white, 1 is black
 
@@ -34,7 +34,7 @@ Color mosaic(double u, double v, int cells, uint32_t seed, const Drawing& drawin
 // The "wide sea" of Rossio: bands that swing left and right.
 double wide_sea(double u, double v) {
   const double y = v * 4 + 0.36 * std::sin(u * 2 * 2 * kPi);
-  return wrapped(y) < 0.5 ? 1.0 : 0.0;
+  return wrapped(y) < 0.43 ? 1.0 : 0.0;
 }
 
 // A running lozenge between two black lines.
@@ -74,11 +74,11 @@ double compass(double u, double v) {
 // Granite setts of the roadway, in rows.
 Color setts(double u, double v) {
   const Block b = block_at(u, v, 18, 26, 77);
-  const double tone = 0.40 + 0.10 * (unit(b.id) - 0.5);
+  const double tone = 0.55 + 0.10 * (unit(b.id) - 0.5);
   const double warm = 0.02 * (unit(hash(b.id, 9)) - 0.5);
   const double grain = 0.06 * (fractal(u, v, 64, 3, 5) - 0.5) + 0.12 * (fractal(u, v, 3, 4, 6) - 0.5);
-  const Color face{tone + grain + 0.02 + warm, tone + grain + 0.01, tone + grain - warm};
-  return mix({0.27, 0.255, 0.235}, face, block_face(b, 0.16, 1.2));
+  const Color face{tone + grain + 0.025 + warm, tone + grain + 0.005, tone + grain - 0.025 - warm};
+  return mix({0.40, 0.38, 0.35}, face, block_face(b, 0.16, 1.2));
 }
 
 }  // namespace

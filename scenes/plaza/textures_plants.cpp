@@ -109,7 +109,7 @@ void paint_leaf_textures(const TextureJob& job) {
     return foliage(leaves, {0.24, 0.36, 0.13}, {0.50, 0.60, 0.25}, u, v);
   });
   paint(job.folder / "blossom.png", side, Alpha::straight, [&](double u, double v) {
-    return foliage(petals, {0.44, 0.33, 0.62}, {0.70, 0.58, 0.84}, u, v);
+    return foliage(petals, {0.50, 0.41, 0.62}, {0.74, 0.66, 0.84}, u, v);
   });
 }
 

@@ -41,7 +41,7 @@ Color plaster(const Color& paint_color, double u, double v, uint32_t seed) {
   const double grain = fractal(u, v, 96, 2, seed + 44) - 0.5;
   Color c = scaled(paint_color, 1 + 0.20 * patches + 0.05 * (streaks - 0.5) + 0.05 * grain - 0.10 * run);
   const double worn = smooth_step(0.70, 0.78, fractal(u, v, 5, 4, seed + 45));
-  return mix(c, {0.80, 0.77, 0.71}, 0.45 * worn);
+  return mix(c, {0.80, 0.77, 0.71}, 0.22 * worn);
 }
 
 // Blue and white tiles, four motifs a side: a flower in a ring, quarters of another in the corners.

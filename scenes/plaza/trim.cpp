@@ -52,7 +52,7 @@ void iron_balcony(Mesh& mesh, const Frame& f, double x0, double x1, double y, Fi
   // Two consoles: scrolls seen from the side.
   for (const double x : {x0 + 0.15, x1 - 0.33}) {
     const Frame side{point(f, {x, y - thick - 0.08, 0}), f.z, f.y, f.x * -1};
-    extrude(mesh, Surface::stone, side, {{0.0, -0.55}, {0.10, -0.50}, {0.24, -0.24}, {0.36, 0.0}, {0.0, 0.0}},
+    extrude(mesh, Surface::stone, side, {{0.0, -0.36}, {0.10, -0.33}, {0.24, -0.18}, {0.36, 0.0}, {0.0, 0.0}},
             -0.18, 0);
   }
   const double spacing = mesh.detail.level < 0.5 ? 0.3 : 0.115;

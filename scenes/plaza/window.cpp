@@ -9,9 +9,6 @@
 namespace plaza {
 namespace {
 
-constexpr double kReveal = 0.24;  // depth of the hole before the joinery
-constexpr double kRoom = 2.2;     // depth of a room
-
 // A pane is never quite in the plane of its neighbours: each mirrors a slightly other piece of world.
 void pane(Mesh& mesh, const Frame& f, double x0, double x1, double y0, double y1, double z, uint32_t id) {
   const double lean = 0.007 * (unit(hash(id, 1)) - 0.5), turn = 0.007 * (unit(hash(id, 2)) - 0.5);
@@ -56,40 +53,6 @@ void leaf(Mesh& mesh, const Frame& f, const Hole& h, const Grid& grid, const Joi
   }
 }
 
-// A hanging in folds, from a rod at the top of the window.
-void curtain(Mesh& mesh, const Frame& f, double x0, double x1, double y0, double y1, double z,
-             Surface surface) {
-  const int folds = std::max(2, static_cast<int>((x1 - x0) / 0.12));
-  surface_grid(
-      mesh, surface, divisions(mesh.detail, folds * 4, folds), divisions(mesh.detail, 1, 1),
-      [&](double u, double v) {
-        return point(f, {x0 + (x1 - x0) * u, y0 + (y1 - y0) * v, z + 0.035 * std::cos(u * folds * 2 * kPi)});
-      },
-      Ends::open, {1, 1});
-}
-
-void furnish(Mesh& mesh, const Frame& f, const Hole& h, const Joinery& j) {
-  const double width = h.x1 - h.x0, z = -kReveal - 0.22;
-  const Surface cloth = unit(hash(j.seed, 3)) < 0.72 ? Surface::curtain : Surface::curtain_warm;
-  const double kind = unit(hash(j.seed, 4));
-  const double open = 0.16 + 0.22 * unit(hash(j.seed, 5));
-  if (kind < 0.75) {
-    curtain(mesh, f, h.x0 + 0.03, h.x0 + open * width, h.y0 + 0.02, h.y1 - 0.05, z, cloth);
-    curtain(mesh, f, h.x1 - open * width, h.x1 - 0.03, h.y0 + 0.02, h.y1 - 0.05, z, cloth);
-  } else {
-    // A roller blind, drawn part of the way.
-    const double y = h.y1 - (h.y1 - h.y0) * (0.2 + 0.5 * unit(hash(j.seed, 6)));
-    box(mesh, cloth, f, {h.x0 + 0.04, y, z}, {h.x1 - 0.04, h.y1 - 0.03, z + 0.02}, kFront | kBack | kBottom);
-  }
-  if (unit(hash(j.seed, 7)) < 0.5) {
-    // A picture on the far wall.
-    const double x = h.x0 + width * (0.35 + 0.2 * unit(hash(j.seed, 8))), y = h.y0 + 1.2;
-    box(mesh, Surface::brass, f, {x, y, -kRoom + 0.02}, {x + 0.35, y + 0.5, -kRoom + 0.05}, kOnWall);
-    box(mesh, Surface::cloth_blue, f, {x + 0.05, y + 0.05, -kRoom + 0.02},
-        {x + 0.30, y + 0.45, -kRoom + 0.06}, kOnWall);
-  }
-}
-
 void door_leaves(Mesh& mesh, const Frame& f, const Hole& h, double z) {
   const std::array<Vec3d, 4> corners{point(f, {h.x0, h.y0, z}), point(f, {h.x1, h.y0, z}),
                                      point(f, {h.x1, h.y1, z}), point(f, {h.x0, h.y1, z})};
@@ -117,8 +80,10 @@ void fill_hole(Mesh& mesh, const Frame& f, const Hole& h, const Joinery& j) {
   }
   room(mesh, Surface::stone, Surface::stone, f, {h.x0, h.y0, z}, {h.x1, h.y1, 0},
        kLeft | kRight | kTop | kBottom);
-  room(mesh, Surface::interior, Surface::floorboards, f, {h.x0, h.y0, -kRoom}, {h.x1, h.y1, z},
-       kAllSides - kFront);
+  if (j.filling != Filling::cafe) {
+    room(mesh, Surface::interior, Surface::floorboards, f, {h.x0, h.y0, -kRoom}, {h.x1, h.y1, z},
+         kAllSides - kFront);
+  }
   if (!fine) {
     pane(mesh, f, h.x0, h.x1, h.y0, h.y1, z, j.seed);
     if (j.finish == Finish::fine) return;
@@ -126,18 +91,15 @@ void fill_hole(Mesh& mesh, const Frame& f, const Hole& h, const Joinery& j) {
         kFront | kLeft | kRight);
     return;
   }
+  if (j.filling == Filling::cafe) {
+    leaf(mesh, f, {h.x0, h.x1, h.y0, h.y1 - 0.85}, {2, 1, 0.09, 0.07}, j, z);
+    leaf(mesh, f, {h.x0, h.x1, h.y1 - 0.85, h.y1}, {4, 1, 0.08, 0.04}, j, z);
+    return;
+  }
   if (j.filling == Filling::shopfront) {
     leaf(mesh, f, {h.x0, h.x1, h.y0, h.y1 - 0.8}, {3, 1, 0.09, 0.06}, j, z);
     leaf(mesh, f, {h.x0, h.x1, h.y1 - 0.8, h.y1}, {6, 1, 0.08, 0.035}, j, z);
-    // A table with wares behind the pane.
-    box(mesh, Surface::bench, f, {h.x0 + 0.1, h.y0 + 0.4, z - 0.9}, {h.x1 - 0.1, h.y0 + 0.48, z - 0.12});
-    const Surface wares[] = {Surface::cloth_red, Surface::brass, Surface::cloth_blue, Surface::paint_white};
-    for (uint32_t i = 0; i < 7; ++i) {
-      const double x = h.x0 + 0.3 + (h.x1 - h.x0 - 0.6) * (i + 0.5 * unit(hash(j.seed, i))) / 7;
-      const double size = 0.1 + 0.1 * unit(hash(j.seed, i, 2));
-      ellipsoid(mesh, wares[hash(j.seed, i, 3) % 4], moved(f, {x, h.y0 + 0.48 + size * 1.3, z - 0.45}),
-                {size, size * 1.3, size}, divisions(mesh.detail, 8, 4));
-    }
+    furnish_shop(mesh, f, h, j.seed);
     return;
   }
   const int rows = std::max(2, static_cast<int>(std::lround((h.y1 - h.y0) / 0.45)));
@@ -146,7 +108,7 @@ void fill_hole(Mesh& mesh, const Frame& f, const Hole& h, const Joinery& j) {
   Joinery other = j;
   other.seed = hash(j.seed, 77);
   leaf(mesh, f, {middle + 0.003, h.x1, h.y0, h.y1}, {2, rows, 0.065, 0.032}, other, z);
-  furnish(mesh, f, h, j);
+  furnish_room(mesh, f, h, j.seed);
 }
 
 }  // namespace plaza
