@@ -31,7 +31,7 @@ struct Kernels {
   void (*ambient_occlusion)(const KdView& tree, const PointPacket& points, const AmbientSettings& settings,
                             uint32_t* free_rays);
 
-  // The nearest triangle at every pixel of a tile, which must touch the view's window.
+  // The nearest triangle at every pixel of the tile in that column and row, which must touch the view's window.
   void (*fill_tile)(const RasterView& view, int tile_x, int tile_y, TileVisibility& out);
 
   // Where the camera rays through the block whose corner is (x, y) meet the 64 triangles that

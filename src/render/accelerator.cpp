@@ -15,6 +15,12 @@ bool cut_out_is_there(const void* scene_pointer, uint32_t triangle, float u, flo
   return sample_alpha(map, texcoord_at(scene.mesh, triangle, u, v)) >= 0.5f;
 }
 
+void set_views(const Scene& scene, Accelerator& a) {
+  const CutOuts cut_outs = make_cut_outs(scene);
+  a.view = make_view(a.all, a.triangles, cut_outs);
+  a.glass_view = make_view(a.glass, a.triangles, cut_outs);
+}
+
 }  // namespace
 
 CutOuts make_cut_outs(const Scene& scene) { return {cut_out_is_there, &scene}; }
@@ -30,7 +36,8 @@ Vec2 texcoord_at(const Mesh& mesh, uint32_t triangle, float u, float v) {
   return {(corner[0].x * w + corner[1].x * u) + corner[2].x * v, (corner[0].y * w + corner[1].y * u) + corner[2].y * v};
 }
 
-void gather_triangles(const Scene& scene, ThreadPool& pool, std::vector<KdTriangle>& triangles) {
+void gather_triangles(const Scene& scene, ThreadPool& pool, Accelerator& accelerator) {
+  std::vector<KdTriangle>& triangles = accelerator.triangles;
   const Mesh& mesh = scene.mesh;
   std::vector<uint32_t> flags(scene.materials.size());
   for (size_t m = 0; m < flags.size(); ++m) {
@@ -51,10 +58,11 @@ void gather_triangles(const Scene& scene, ThreadPool& pool, std::vector<KdTriang
       triangles[i].flags = flags[mesh.triangle_material[i]];
     }
   });
+  set_views(scene, accelerator);
 }
 
 void build_accelerator(const Scene& scene, ThreadPool& pool, const Control& control, Accelerator& a) {
-  gather_triangles(scene, pool, a.triangles);
+  gather_triangles(scene, pool, a);
   std::vector<uint32_t> all(a.triangles.size()), glass;
   for (uint32_t i = 0; i < all.size(); ++i) {
     all[i] = i;
@@ -70,9 +78,7 @@ void build_accelerator(const Scene& scene, ThreadPool& pool, const Control& cont
   a.all = build_kdtree(a.triangles, all, settings, executor);
   a.glass = build_kdtree(a.triangles, glass, settings, executor);
   a.has_glass = !glass.empty();
-  const CutOuts cut_outs = make_cut_outs(scene);
-  a.view = make_view(a.all, a.triangles, cut_outs);
-  a.glass_view = make_view(a.glass, a.triangles, cut_outs);
+  set_views(scene, a);
 }
 
 }  // namespace vitral

@@ -26,8 +26,8 @@ struct Accelerator {
 // Throws Interrupted when control.stop is set on the way.
 void build_accelerator(const Scene& scene, ThreadPool& pool, const Control& control, Accelerator& accelerator);
 
-// The triangles alone, without trees: all that the rasterizer needs.
-void gather_triangles(const Scene& scene, ThreadPool& pool, std::vector<KdTriangle>& triangles);
+// The triangles alone, with trees that are empty: all that the rasterizer needs.
+void gather_triangles(const Scene& scene, ThreadPool& pool, Accelerator& accelerator);
 
 // The rule by which a cut-out texture removes parts of a triangle.
 CutOuts make_cut_outs(const Scene& scene);

@@ -19,6 +19,7 @@ struct FrameContext {
   const Accelerator& accelerator;
   const Kernels& kernels;
   Pinhole camera;
+  const RasterView* raster;             // null: primary rays are traced
   float offset;                         // ray_offset() of this scene and camera
   float least_importance;               // settings.min_importance, at least 1/4096: what a surface sends
                                         // on weighs no more than what came, so no pixel has more paths
@@ -67,9 +68,11 @@ struct LightDetail {
   float ao[kPacketSize];      // 0..1
 };
 
-// primary.cpp: what the camera sees in the 8x8 block with its corner at pixel (x, y): rays through
-// the pixel centres, and their hits, found by tracing.
-void trace_primary(const FrameContext& frame, int x, int y, uint64_t lanes, PassTally& tally, RayPacket& rays, HitPacket& hits);
+// primary.cpp: what the camera sees. First the tile, when it is rasterized; then block by block the
+// rays through the pixel centres and their hits. `lanes` are the pixels wanted.
+void rasterize_tile(const FrameContext& frame, int tile_x, int tile_y, PassTally& tally, TileVisibility& visibility);
+void primary_hits(const FrameContext& frame, const TileVisibility& visibility, int block, int x, int y, uint64_t lanes,
+                  PassTally& tally, RayPacket& rays, HitPacket& hits);
 
 // resolve.cpp: encodes linear colours; counts and paints red those that are not finite.
 Rgb8 encode_pixel(Vec3& color, uint64_t& not_finite);

@@ -1,14 +1,26 @@
-// What the camera sees: the rasterizer's answer, or the tracer's.
+// What the camera sees: the rasterizer's answer, or the tracer's. Both give the same hits.
 #include "render/frame.h"
 
 namespace vitral {
 
-void trace_primary(const FrameContext& frame, int x, int y, uint64_t lanes, PassTally& tally, RayPacket& rays, HitPacket& hits) {
+void rasterize_tile(const FrameContext& frame, int tile_x, int tile_y, PassTally& tally, TileVisibility& visibility) {
+  if (!frame.raster) return;
   const PassTimer timer(tally, Pass::raster);
-  count_rays(tally, Pass::raster, lanes);
+  frame.kernels.fill_tile(*frame.raster, tile_x / kTileSide, tile_y / kTileSide, visibility);
+}
+
+void primary_hits(const FrameContext& frame, const TileVisibility& visibility, int block, int x, int y, uint64_t lanes,
+                  PassTally& tally, RayPacket& rays, HitPacket& hits) {
+  const PassTimer timer(tally, Pass::raster);
   frame.kernels.primary_rays(frame.camera, x, y, rays);
   rays.live = lanes;
-  frame.kernels.trace_closest(frame.accelerator.view, rays, hits);
+  if (frame.raster) {
+    frame.kernels.intersect_visible(frame.camera, frame.accelerator.triangles.data(), x, y,
+                                    visibility.triangle + block * kPacketSize, hits);
+  } else {
+    count_rays(tally, Pass::raster, lanes);
+    frame.kernels.trace_closest(frame.accelerator.view, rays, hits);
+  }
 }
 
 }  // namespace vitral

@@ -1,6 +1,7 @@
 // The table of contents: one frame from beginning to end.
 //
 //   build      triangles side by side, kd-tree                       accelerator.cpp
+//   setup      triangles on the screen, sorted into bins              raster/frame.cpp
 //   per tile of 32x32 pixels, on all threads, in any order:
 //     primary    what each pixel sees                                primary.cpp
 //     surface    position, normals, material there                   surface.cpp
@@ -11,6 +12,7 @@
 
 #include "math/elementary.h"
 #include "math/random.h"
+#include "raster/frame.h"
 #include "render/frame.h"
 #include "render/kernel_choice.h"
 #include "vitral/error.h"
@@ -27,6 +29,7 @@ constexpr size_t kTilePixels = static_cast<size_t>(kTileSide) * kTileSide;
 // A worker's own memory.
 struct Worker {
   PassTally tally;
+  TileVisibility visibility;
   PathScratch paths;
   std::vector<Vec3> color, reflection, refraction;  // of the tile
   uint64_t covered = 0, not_finite = 0;
@@ -103,19 +106,19 @@ void render_tile(const FrameContext& frame, const Rectangle& crop, int tile_x, i
   worker.reflection.assign(kTilePixels, Vec3{0, 0, 0});
   worker.refraction.assign(kTilePixels, Vec3{0, 0, 0});
   worker.paths.current.clear();
+  rasterize_tile(frame, tile_x, tile_y, worker.tally, worker.visibility);
   const auto frame_pixel = [&](int x, int y) {
     return static_cast<size_t>(y - crop.y) * static_cast<size_t>(crop.width) + static_cast<size_t>(x - crop.x);
   };
 
   for (int block = 0; block < kTileBlocks; ++block) {
-    constexpr int kBlocksPerRow = kTileSide / kBlockSide;
-    const int x = tile_x + block % kBlocksPerRow * kBlockSide, y = tile_y + block / kBlocksPerRow * kBlockSide;
+    const int x = tile_x + block % kTileBlocksAcross * kBlockSide, y = tile_y + block / kTileBlocksAcross * kBlockSide;
     const uint64_t lanes = lanes_inside(crop, x, y);
     if (lanes == 0) continue;
     RayPacket rays;
     HitPacket hits;
     SurfacePacket surfaces;
-    trace_primary(frame, x, y, lanes, worker.tally, rays, hits);
+    primary_hits(frame, worker.visibility, block, x, y, lanes, worker.tally, rays, hits);
     {
       const PassTimer timer(worker.tally, Pass::shade);
       make_surfaces(frame.scene, rays, hits, lanes, surfaces);
@@ -183,7 +186,7 @@ Frame render_frame(const Scene& scene, const Accelerator& accelerator, const Cam
   const Rectangle crop = crop_of(settings);
 
   FrameContext frame{scene, settings, accelerator, choose_kernels(settings.isa), make_pinhole(camera, settings.width, settings.height),
-                     0, 0, 0, {}};
+                     nullptr, 0, 0, 0, {}};
   frame.offset = ray_offset(greatest(accelerator.view.magnitude, largest_component(camera.position)));
   frame.least_importance = greatest(settings.min_importance, 1.0f / 4096);
   frame.ao_strata = static_cast<int>(square_root(static_cast<float>(settings.ao_samples)) + 0.5f);
@@ -202,6 +205,22 @@ Frame render_frame(const Scene& scene, const Accelerator& accelerator, const Cam
     const bool scalar = index == 3 || (index >= 5 && index <= 8);
     out.aovs.push_back({name, scalar ? 1 : 3, Image<Vec3>(crop.width, crop.height, Vec3{0, 0, 0})});
     targets.by_index[index] = &out.aovs.back();
+  }
+
+  PassTally setup_tally;
+  RasterFrame raster;
+  RasterView raster_view{};
+  if (settings.primary == Primary::raster) {
+    const PassTimer timer(setup_tally, Pass::raster);
+    const ForEach for_each = [&](size_t count, const std::function<void(size_t)>& body) {
+      pool.parallel_for(count, [&](size_t i, size_t) {
+        if (control.stop.load(std::memory_order_relaxed)) throw Interrupted();
+        body(i);
+      });
+    };
+    setup_frame(frame.camera, settings.width, settings.height, crop, scene.mesh, for_each, raster);
+    raster_view = make_view(raster, frame.camera, accelerator.triangles.data(), &accelerator.view.cut_outs);
+    frame.raster = &raster_view;
   }
 
   // Tiles are anchored at the frame's corner, so that a crop's pixels see the same neighbours.
@@ -232,9 +251,18 @@ Frame render_frame(const Scene& scene, const Accelerator& accelerator, const Cam
   stats.dropped_triangles = scene.dropped_triangles;
   stats.tree_nodes = accelerator.all.nodes.size();
   stats.tree_bytes = accelerator.all.nodes.size() * sizeof(KdNode) + accelerator.all.references.size() * sizeof(uint32_t);
+  workers[0].tally.seconds[static_cast<size_t>(Pass::raster)] += setup_tally.seconds[static_cast<size_t>(Pass::raster)];
   collect_stats(workers, stats);
   stats.frame_seconds = seconds_since(start);
   return out;
+}
+
+// Without rays there is nothing to trace.
+static bool needs_tree(const Scene& scene, const Settings& settings) {
+  const Effects& on = settings.effects;
+  if (settings.primary == Primary::trace || on.shadows || on.ambient_occlusion) return true;
+  const bool bends = std::any_of(scene.materials.begin(), scene.materials.end(), [](const Material& m) { return m.optics != Optics::opaque; });
+  return bends && (on.reflection || on.refraction);
 }
 
 Frame render(const Scene& scene, const Camera& camera, const Settings& settings, Control& control) {
@@ -245,7 +273,11 @@ Frame render(const Scene& scene, const Camera& camera, const Settings& settings,
   const auto start = std::chrono::steady_clock::now();
   if (control.on_progress) control.on_progress({"build", 0, 0});
   Accelerator accelerator;
-  build_accelerator(scene, pool, control, accelerator);
+  if (needs_tree(scene, settings)) {
+    build_accelerator(scene, pool, control, accelerator);
+  } else {
+    gather_triangles(scene, pool, accelerator);
+  }
   const double build_seconds = seconds_since(start);
   Frame frame = render_frame(scene, accelerator, camera, settings, pool, control);
   frame.stats.build_seconds = build_seconds;
