@@ -78,7 +78,7 @@ TEST(AutoView, FramesBoxesOfAnyShapeAndScale) {
 TEST(AutoView, FramesWhateverTheWayItLooksAndTheAngle) {
   const Box box{{-1, 0, -2}, {3, 1, 2}};
   for (const Vec3& view : {Vec3{1, 0, 0}, Vec3{0, -1, 0}, Vec3{0, 1, 0}, Vec3{-1, -1, 1}, Vec3{0, 0, 5}}) {
-    for (const float fov : {1.0f, 20.0f, 90.0f, 150.0f}) {
+    for (const float fov : {1.0f, 20.0f, 60.0f, 90.0f}) {
       ViewWishes wishes;
       wishes.view = view;
       wishes.fov = fov;

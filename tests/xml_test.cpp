@@ -82,7 +82,7 @@ TEST(Xml, NamesTheLineOfWhatIsWrong) {
   EXPECT_EQ(complaint("<a x='1'y='2'/>"), "f.xml:1: expected a space before 'y='2'/>'");
   EXPECT_EQ(complaint("<a/>\n<b/>"), "f.xml:2: something follows the end of <a>");
   EXPECT_EQ(complaint("<!-- never closed"), "f.xml:1: this comment has no end");
-  EXPECT_EQ(complaint("v 0 0 0\n"), "f.xml:1: expected <, found 'v 0 0 0 '");
+  EXPECT_EQ(complaint("v 0 0 0\n"), "f.xml:1: expected <, found 'v 0 0 0?'");
   EXPECT_EQ(complaint("\n\n"), "f.xml:3: there is no XML element in this file");
   EXPECT_EQ(complaint(""), "f.xml:1: there is no XML element in this file");
   EXPECT_NE(complaint(std::string("<a>\0</a>", 8)), "") << "a NUL";
