@@ -42,11 +42,14 @@ Vec3d middle(const Box& box) {
   return (to_double(box.min) + to_double(box.max)) * 0.5;
 }
 
-// A length to measure by, for every box: the diagonal, or what floats can tell apart out there if
-// that is more; of a point at the origin, 1.
+double diagonal_of(const Box& box) {
+  return length(to_double(box.max) - to_double(box.min));
+}
+
+// A length to measure by, for every box: the diagonal, or some steps of what floats can tell apart out
+// there if that is more; of a point at the origin, 1.
 double scale_of(const Box& box) {
-  const double diagonal = length(to_double(box.max) - to_double(box.min));
-  const double scale = std::max(diagonal, 1e-6 * static_cast<double>(magnitude(box)));
+  const double scale = std::max(diagonal_of(box), 1e-4 * static_cast<double>(magnitude(box)));
   return scale > 0 ? scale : 1;
 }
 
@@ -148,7 +151,8 @@ void light_automatically(const Camera& camera, Scene& scene) {
 
 float auto_ao_distance(const Box& bounds) {
   constexpr double kShare = 0.08;
-  return static_cast<float>(scale_of(bounds) * kShare);
+  const double diagonal = diagonal_of(bounds);
+  return static_cast<float>((diagonal > 0 ? diagonal : scale_of(bounds)) * kShare);
 }
 
 }  // namespace vitral

@@ -3,6 +3,7 @@
 #include "app/auto_view.h"
 #include "io/mesh_file.h"
 #include "io/text.h"
+#include "render/kernel_choice.h"
 
 #include <sys/resource.h>
 #include <unistd.h>
@@ -135,6 +136,7 @@ Job plan_job(const Options& options) {
     override_camera(options, job.camera);
   }
   check_frame(job, options);
+  choose_kernels(job.pipeline.settings.isa);  // throws when this processor lacks them
   return job;
 }
 

@@ -70,6 +70,9 @@ JsonWriter& JsonWriter::add(std::string_view key, std::string_view value) {
 JsonWriter& JsonWriter::add(std::string_view key, double value) {
   return raw(key, shortest(value));
 }
+JsonWriter& JsonWriter::add(std::string_view key, float value) {
+  return raw(key, shortest(value));
+}
 JsonWriter& JsonWriter::add(std::string_view key, uint64_t value) {
   return raw(key, std::to_string(value));
 }

@@ -20,6 +20,7 @@ class JsonWriter {
   JsonWriter& add(std::string_view key, std::string_view value);
   JsonWriter& add(std::string_view key, const char* value) { return add(key, std::string_view(value)); }
   JsonWriter& add(std::string_view key, double value);
+  JsonWriter& add(std::string_view key, float value);
   JsonWriter& add(std::string_view key, uint64_t value);
   JsonWriter& add(std::string_view key, int value);
   JsonWriter& add(std::string_view key, bool value);

@@ -160,7 +160,7 @@ using S = std::string;
 
 constexpr OptionRow kTable[] = {
     {kInOut, "--output", "-o", "FILE", kRender | kDiff,
-     "where the PNG goes; - is standard output. Default of render: NAME.png here",
+     "where the PNG goes, - is standard output (render: NAME.png here)",
      [](O& o, const R& r, const S& v) { o.output = name(r, v); }},
     {kInOut, "--pipeline", "", "NAME", kFrame, "which pipeline of the project (its default one)",
      [](O& o, const R& r, const S& v) { o.pipeline = name(r, v); }},

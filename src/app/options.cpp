@@ -82,7 +82,9 @@ void check_inputs(const Options& options) {
   if (inputs.size() > needed) {
     std::vector<std::string> commands;
     for (const auto& [name, command] : kCommands) commands.emplace_back(name);
-    throw UsageError("one input too many: '" + inputs[needed] + "'" + suggestion(inputs[0], commands));
+    const std::string meant = suggestion(inputs[0], commands);
+    if (!meant.empty()) throw UsageError("unknown command '" + inputs[0] + "'" + meant);
+    throw UsageError("one input too many: '" + inputs[needed] + "'");
   }
   for (const std::string& input : inputs) {
     if (input.empty()) throw UsageError("the name of the input is empty");

@@ -15,10 +15,10 @@ void add_settings(JsonWriter& json, const Settings& settings) {
       .add("ao", settings.effects.ambient_occlusion)
       .end_object()
       .add("ao_samples", settings.ao_samples)
-      .add("ao_distance", static_cast<double>(settings.ao_distance))
-      .add("ao_exponent", static_cast<double>(settings.ao_exponent))
+      .add("ao_distance", settings.ao_distance)
+      .add("ao_exponent", settings.ao_exponent)
       .add("max_depth", settings.max_depth)
-      .add("min_importance", static_cast<double>(settings.min_importance))
+      .add("min_importance", settings.min_importance)
       .add("fresnel", name_of(settings.fresnel))
       .add("compositing", name_of(settings.compositing))
       .add("primary", name_of(settings.primary))
@@ -40,9 +40,9 @@ void add_camera(JsonWriter& json, const Camera& camera) {
       .add("eye", camera.position)
       .add("view", camera.view)
       .add("up", camera.up)
-      .add("fov", static_cast<double>(camera.fov))
-      .add("near", static_cast<double>(camera.near))
-      .add("far", static_cast<double>(camera.far))
+      .add("fov", camera.fov)
+      .add("near", camera.near)
+      .add("far", camera.far)
       .end_object();
 }
 
