@@ -73,7 +73,7 @@ void append(Mesh part, uint32_t first_material, Mesh& mesh) {
 
 void report_dropped(const std::string& path, size_t kept, size_t dropped, Scene& scene, Warnings& warnings) {
   if (kept == 0 && dropped == 0) fail(path, "there are no triangles in it");
-  if (kept == 0) fail(path, "all " + std::to_string(dropped) + " triangles are degenerate or not finite");
+  if (kept == 0) fail(path, "no triangle is left: " + std::to_string(dropped) + " degenerate or not finite");
   scene.dropped_triangles += dropped;
   if (dropped > 0) {
     warnings.push_back(path + ": " + std::to_string(dropped) + " triangle" + (dropped == 1 ? "" : "s") +

@@ -54,84 +54,86 @@ class Smoother {
         threads_(threads) {}
 
   void run() {
+    find_corners();
+    if (needy_.empty()) return;
+    number_positions();
     weld_positions();
-    collect_corners();
+    sort_corners();
     assign();
   }
 
  private:
-  bool needs_normal(size_t corner) const {
-    const size_t t = corner / 3;
-    return mesh_.triangle_normals[first_ + t][corner % 3] == kNoIndex && (groups_.empty() || groups_[t] != 0);
-  }
   uint32_t position_of(size_t corner) const { return mesh_.triangles[first_ + corner / 3][corner % 3]; }
 
-  // Maps every position of the triangles to the first one with the same coordinates. A table with
-  // open addressing; after 32 places that are taken a position stays by itself, which bounds the
-  // time of an unlucky or ill-meant file.
+  // The corners in need of a normal, in the order of the triangles.
+  void find_corners() {
+    for (size_t t = 0; t < count_; ++t) {
+      if (!groups_.empty() && groups_[t] == 0) continue;
+      for (size_t k = 0; k < 3; ++k) {
+        if (mesh_.triangle_normals[first_ + t][k] == kNoIndex)
+          needy_.push_back(static_cast<uint32_t>(3 * t + k));
+      }
+    }
+  }
+
+  // Gives the positions of the triangles of these corners consecutive numbers, in their own order.
+  void number_positions() {
+    number_.assign(mesh_.positions.size(), kNoIndex);
+    for (const uint32_t corner : needy_) {
+      for (const uint32_t p : mesh_.triangles[first_ + corner / 3]) number_[p] = 0;
+    }
+    for (uint32_t p = 0; p < number_.size(); ++p) {
+      if (number_[p] == kNoIndex) continue;
+      number_[p] = static_cast<uint32_t>(positions_.size());
+      positions_.push_back(p);
+    }
+  }
+
+  // Positions with the same coordinates get the number of the first of them. A table with open
+  // addressing; after 32 places that are taken a position stays by itself, which bounds the time of
+  // an unlucky or ill-meant file.
   void weld_positions() {
-    const auto [low, high] = used_range();
-    base_ = low;
-    welded_.assign(high - low, kNoIndex);
     size_t slots = 16;
-    while (slots < 2 * welded_.size()) slots *= 2;
+    while (slots < 2 * positions_.size()) slots *= 2;
     std::vector<uint32_t> table(slots, kNoIndex);
-    for (uint32_t p = low; p < high; ++p) {
-      const Vec3 at = mesh_.positions[p] + Vec3{0, 0, 0};  // -0 becomes +0
-      uint32_t& welded = welded_[p - low];
-      welded = p;
-      size_t slot = hash_position(at) & (slots - 1);
+    for (uint32_t n = 0; n < positions_.size(); ++n) {
+      const Vec3& at = mesh_.positions[positions_[n]];
+      size_t slot = hash_position(at + Vec3{0, 0, 0}) & (slots - 1);  // -0 becomes +0
       for (int tries = 0; tries < 32; ++tries, slot = (slot + 1) & (slots - 1)) {
         if (table[slot] == kNoIndex) {
-          table[slot] = p;
+          table[slot] = n;
           break;
         }
-        if (mesh_.positions[table[slot]] == mesh_.positions[p]) {
-          welded = table[slot];
+        if (mesh_.positions[positions_[table[slot]]] == at) {
+          number_[positions_[n]] = table[slot];
           break;
         }
       }
     }
   }
 
-  std::pair<uint32_t, uint32_t> used_range() const {
-    uint32_t low = kNoIndex, high = 0;
-    for (size_t t = first_; t < mesh_.triangles.size(); ++t) {
-      for (const uint32_t p : mesh_.triangles[t]) {
-        low = std::min(low, p);
-        high = std::max(high, p + 1);
-      }
-    }
-    return {low, high};
-  }
-
-  // Lists the corners in need by position: a counting sort, so that those of one position stand in
-  // the order of their triangles.
-  void collect_corners() {
-    begin_.assign(welded_.size() + 1, 0);
-    for (size_t corner = 0; corner < 3 * count_; ++corner) {
-      if (needs_normal(corner)) ++begin_[welded_[position_of(corner) - base_] - base_ + 1];
-    }
+  // Sorts the corners by position; those of one position stay in the order of their triangles.
+  void sort_corners() {
+    begin_.assign(positions_.size() + 1, 0);
+    for (const uint32_t corner : needy_) ++begin_[number_[position_of(corner)] + 1];
     for (size_t i = 1; i < begin_.size(); ++i) begin_[i] += begin_[i - 1];
-    corners_.resize(begin_.back());
+    corners_.resize(needy_.size());
     std::vector<uint32_t> cursor(begin_.begin(), begin_.end() - 1);
-    for (size_t corner = 0; corner < 3 * count_; ++corner) {
-      if (!needs_normal(corner)) continue;
-      corners_[cursor[welded_[position_of(corner) - base_] - base_]++] = static_cast<uint32_t>(corner);
-    }
+    for (const uint32_t corner : needy_) corners_[cursor[number_[position_of(corner)]]++] = corner;
+    needy_ = {};
   }
 
   // Blocks of positions are independent. Each makes its own list of normals; the lists are joined
   // in order and the corners' numbers moved by where their block's list went.
   void assign() {
     constexpr size_t kBlock = 8192;
-    const size_t blocks = (welded_.size() + kBlock - 1) / kBlock;
+    const size_t blocks = (positions_.size() + kBlock - 1) / kBlock;
     std::vector<std::vector<Vec3>> lists(blocks);
     run_tasks(blocks, threads_, [&](size_t, size_t block) {
       std::vector<Incident> star;
       std::vector<Sum> sums;
       std::vector<std::pair<uint32_t, uint32_t>> edges;
-      const size_t end = std::min(welded_.size(), (block + 1) * kBlock);
+      const size_t end = std::min(positions_.size(), (block + 1) * kBlock);
       for (size_t p = block * kBlock; p < end; ++p) {
         if (begin_[p + 1] - begin_[p] < 2) continue;  // a lone corner has its own normal
         gather(p, star);
@@ -152,7 +154,7 @@ class Smoother {
       list = {};
     }
     run_tasks(blocks, threads_, [&](size_t, size_t block) {
-      const size_t end = std::min(welded_.size(), (block + 1) * kBlock);
+      const size_t end = std::min(positions_.size(), (block + 1) * kBlock);
       for (size_t i = begin_[block * kBlock]; i < begin_[end]; ++i) {
         uint32_t& normal = mesh_.triangle_normals[first_ + corners_[i] / 3][corners_[i] % 3];
         if (normal != kNoIndex) normal += static_cast<uint32_t>(offset[block]);
@@ -168,8 +170,8 @@ class Smoother {
       const size_t t = c.corner / 3, k = c.corner % 3;
       const Corners& triangle = mesh_.triangles[first_ + t];
       const uint32_t right = triangle[(k + 1) % 3], left = triangle[(k + 2) % 3];
-      c.left = welded_[left - base_];
-      c.right = welded_[right - base_];
+      c.left = number_[left];
+      c.right = number_[right];
       c.group = groups_.empty() ? 0 : groups_[t];
       const Vec3d at = to_double(mesh_.positions[triangle[k]]);
       const Vec3d e = to_double(mesh_.positions[right]) - at, f = to_double(mesh_.positions[left]) - at;
@@ -266,9 +268,10 @@ class Smoother {
   size_t first_, count_;
   std::span<const uint32_t> groups_;
   int threads_;
-  uint32_t base_ = 0;             // the lowest position in use
-  std::vector<uint32_t> welded_;  // [position - base_]: the position that stands for it
-  std::vector<uint32_t> begin_;   // [position - base_]: its corners are corners_[begin .. next begin)
+  std::vector<uint32_t> needy_;      // corners, as 3 * triangle + corner, triangles counted from first_
+  std::vector<uint32_t> positions_;  // that their triangles use
+  std::vector<uint32_t> number_;     // [position]: into positions_, equal ones the same
+  std::vector<uint32_t> begin_;      // [number]: its corners are corners_[begin .. next begin)
   std::vector<uint32_t> corners_;
 };
 

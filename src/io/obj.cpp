@@ -19,8 +19,17 @@
 namespace vitral {
 namespace {
 
-constexpr uint64_t kChunkBytes = uint64_t{1} << 20;
+constexpr uint64_t kMinChunkBytes = uint64_t{1} << 18;
+constexpr uint64_t kMaxChunkBytes = uint64_t{1} << 23;
 constexpr size_t kFewWarnings = 5;
+
+// Some write blanks in the names of files as "\\ ".
+std::string without_escapes(std::string name) {
+  for (size_t at = name.find("\\ "); at != std::string::npos; at = name.find("\\ ", at + 1))
+    name.erase(at, 1);
+  return name;
+}
+
 constexpr size_t kMaxTriangles = size_t{1} << 30;
 
 class ObjLoader {
@@ -70,14 +79,16 @@ class ObjLoader {
 void ObjLoader::read_chunks() {
   const InputFile file(path_);
   if (file.size() == 0) fail(path_, "the file is empty");
-  file_.chunks.resize(static_cast<size_t>((file.size() + kChunkBytes - 1) / kChunkBytes));
+  const uint64_t share = file.size() / (8 * thread_count(threads_));  // several chunks for each thread
+  const uint64_t chunk_bytes = std::clamp(share, kMinChunkBytes, kMaxChunkBytes);
+  file_.chunks.resize(static_cast<size_t>((file.size() + chunk_bytes - 1) / chunk_bytes));
   std::vector<std::vector<char>> buffers(thread_count(threads_));
   std::atomic<bool> stop{false};
   run_tasks(file_.chunks.size(), threads_, [&](size_t worker, size_t i) {
     if (stop) return;
-    const uint64_t begin = i * kChunkBytes;
+    const uint64_t begin = i * chunk_bytes;
     file_.chunks[i] =
-        read_obj_chunk(file, begin, std::min(file.size(), begin + kChunkBytes), buffers[worker]);
+        read_obj_chunk(file, begin, std::min(file.size(), begin + chunk_bytes), buffers[worker]);
     if (!file_.chunks[i].error.text.empty()) stop = true;
   });
 }
@@ -85,6 +96,7 @@ void ObjLoader::read_chunks() {
 void ObjLoader::check_chunks() {
   file_.before.resize(1);
   size_t statements = 0;
+  bool with_normal = false, with_texcoord = false;
   ObjNote skipped, small;
   for (size_t i = 0; i < file_.chunks.size(); ++i) {
     const ObjChunk& c = file_.chunks[i];
@@ -101,6 +113,8 @@ void ObjLoader::check_chunks() {
     next.triangles += c.triangles;
     file_.before.push_back(next);
     statements += c.statements;
+    with_normal |= c.corners_with_normal;
+    with_texcoord |= c.corners_with_texcoord;
   }
   if (statements == 0) fail(path_, "not an OBJ file: no statement is known");
   const ObjBefore& all = file_.before.back();
@@ -111,9 +125,14 @@ void ObjLoader::check_chunks() {
     if (note.count > 0) warnings_.push_back(path_ + ":" + std::to_string(note.line + 1) + ": " + reason);
   };
   warn(skipped,
-       "'" + skipped.text + "' is skipped" +
+       quoted(skipped.text) + " is skipped" +
            (skipped.count > 1 ? ", as are " + std::to_string(skipped.count - 1) + " more statements" : ""));
   warn(small, std::to_string(small.count) + " face(s) of fewer than three corners, the first here");
+  if (with_normal && all.normals == 0)
+    warnings_.push_back(path_ + ": faces name normals, but there are none");
+  if (with_texcoord && all.texcoords == 0) {
+    warnings_.push_back(path_ + ": faces name texture coordinates, but there are none");
+  }
 }
 
 // All libraries in the order in which they are named. Of several materials of one name the first
@@ -139,13 +158,14 @@ void ObjLoader::load_library(size_t chunk, const ObjNote& note) {
     std::string name;
     for (size_t at = 0; at < note.text.size();) {
       const size_t blank = std::min(note.text.find_first_of(" \t", at), note.text.size());
-      name += (name.empty() ? "" : " ") + note.text.substr(at, blank - at);
+      if (!name.empty()) name += ' ';
+      name += note.text.substr(at, blank - at);
       at = std::min(note.text.find_first_not_of(" \t", blank), note.text.size());
       if (lower_case(name).ends_with(".mtl") || at == note.text.size())
         names.push_back(std::exchange(name, {}));
     }
     for (const std::string& n : names) {
-      if (!look_for(n))
+      if (!look_for(n) && !look_for(without_escapes(n)))
         warn_at(chunk, note.line, "material library " + quoted(n) + ": No such file or directory");
     }
   }

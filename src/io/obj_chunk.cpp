@@ -1,5 +1,6 @@
 #include "io/obj_chunk.h"
 
+#include "io/memory.h"
 #include "io/text.h"
 
 #include <algorithm>
@@ -154,7 +155,8 @@ class ChunkReader {
     while (more()) {
       ObjCorner corner;
       if (!read_corner(corner)) return;
-      if (corner.normal == kNoIndex) chunk_.corners_without_normal = true;
+      (corner.normal == kNoIndex ? chunk_.corners_without_normal : chunk_.corners_with_normal) = true;
+      if (corner.texcoord != kNoIndex) chunk_.corners_with_texcoord = true;
       chunk_.corners.push_back(corner);
     }
     const size_t n = chunk_.corners.size() - first;
@@ -235,6 +237,7 @@ ObjChunk read_obj_chunk(const InputFile& file, uint64_t begin, uint64_t end, std
   size_t read = 0;  // bytes after `begin`
   for (size_t wanted = length + 4096;; wanted *= 2) {
     wanted = static_cast<size_t>(std::min<uint64_t>(wanted, file.size() - begin));
+    if (buffer.empty()) reserve_large(buffer, wanted + 4);
     if (buffer.size() < wanted + 4) buffer.resize(wanted + 4);
     if (read == 0) {
       std::memset(buffer.data(), '\n', 3);
@@ -254,9 +257,9 @@ ObjChunk read_obj_chunk(const InputFile& file, uint64_t begin, uint64_t end, std
   }
   const char* start = find_statement(text, text + length);
   if (begin == 0 && read >= 3 && std::memcmp(text, "\xef\xbb\xbf", 3) == 0) start = text + 3;  // UTF-8 mark
-  chunk.positions.reserve(length / 32);
-  chunk.corners.reserve(length / 16);
-  chunk.faces.reserve(length / 48);
+  reserve_large(chunk.positions, length / 24);
+  reserve_large(chunk.corners, length / 12);
+  reserve_large(chunk.faces, length / 40);
   ChunkReader(Cursor{start, text + read, 0}, text + length, chunk).run();
   return chunk;
 }

@@ -57,7 +57,8 @@ struct ObjChunk {
   size_t triangles = 0;                // faces cut into triangles
   size_t statements = 0;               // understood
   bool smoothing = false;              // there is an `s` statement
-  bool corners_without_normal = false;
+  bool corners_without_normal = false, corners_with_normal = false;
+  bool corners_with_texcoord = false;
 };
 
 // Reads the statements that start in bytes [begin, end) of the file. `buffer` is working memory. A

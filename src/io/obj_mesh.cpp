@@ -1,5 +1,6 @@
 #include "io/obj_mesh.h"
 
+#include "io/memory.h"
 #include "io/mesh_builder.h"
 #include "io/normals.h"
 #include "io/threads.h"
@@ -34,14 +35,14 @@ class ObjMeshBuilder {
   // Memory is touched for the first time here, which is worth sharing out too.
   void make_room() {
     const std::function<void()> tasks[] = {
-        [this] { mesh_.triangles.resize(all_.triangles); },
-        [this] { mesh_.triangle_normals.resize(all_.normals > 0 ? all_.triangles : 0); },
-        [this] { mesh_.triangle_texcoords.resize(all_.texcoords > 0 ? all_.triangles : 0); },
-        [this] { mesh_.triangle_material.resize(all_.triangles); },
+        [this] { resize_large(mesh_.triangles, all_.triangles); },
+        [this] { resize_large(mesh_.triangle_normals, all_.normals > 0 ? all_.triangles : 0); },
+        [this] { resize_large(mesh_.triangle_texcoords, all_.texcoords > 0 ? all_.triangles : 0); },
+        [this] { resize_large(mesh_.triangle_material, all_.triangles); },
         [this] {
-          mesh_.positions.resize(all_.positions);
-          mesh_.texcoords.resize(all_.texcoords);
-          mesh_.normals.resize(all_.normals);
+          resize_large(mesh_.positions, all_.positions);
+          resize_large(mesh_.texcoords, all_.texcoords);
+          resize_large(mesh_.normals, all_.normals);
         },
     };
     run_tasks(std::size(tasks), threads_, [&tasks](size_t, size_t i) { tasks[i](); });
@@ -69,8 +70,9 @@ class ObjMeshBuilder {
   static bool is_missing(const Vec3& normal) { return !(normal.x == normal.x); }
   bool any_bad_normal() const { return std::count(bad_normals_.begin(), bad_normals_.end(), 1) > 0; }
   bool wants_normals() const {
-    return any_bad_normal() || std::any_of(file_.chunks.begin(), file_.chunks.end(),
-                                           [](const ObjChunk& c) { return c.corners_without_normal; });
+    return all_.normals == 0 || any_bad_normal() ||
+           std::any_of(file_.chunks.begin(), file_.chunks.end(),
+                       [](const ObjChunk& c) { return c.corners_without_normal; });
   }
   bool wants_groups() const {
     return wants_normals() && std::any_of(file_.chunks.begin(), file_.chunks.end(),
@@ -90,13 +92,18 @@ class ObjMeshBuilder {
     fail(file_.path, file_.before[chunk].lines + line + 1, shown);
   }
 
+  // Some files refer to normals or texture coordinates and hold none at all, as if they were cut out.
   ObjCorner resolve(const ObjCorner& raw, const ObjBefore& b, size_t chunk, size_t line) const {
     ObjCorner corner = raw;
     corner.position = resolve(raw.position, b.positions, all_.positions, "vertex", chunk, line);
-    if (raw.texcoord != kNoIndex) {
+    if (all_.texcoords == 0) {
+      corner.texcoord = kNoIndex;
+    } else if (raw.texcoord != kNoIndex) {
       corner.texcoord = resolve(raw.texcoord, b.texcoords, all_.texcoords, "texture coordinate", chunk, line);
     }
-    if (raw.normal != kNoIndex) {
+    if (all_.normals == 0) {
+      corner.normal = kNoIndex;
+    } else if (raw.normal != kNoIndex) {
       corner.normal = resolve(raw.normal, b.normals, all_.normals, "normal", chunk, line);
       if (is_missing(mesh_.normals[corner.normal])) corner.normal = kNoIndex;
     }

@@ -152,23 +152,26 @@ class PlyLoader {
     if (vertex_count_ > (uint64_t{1} << 30)) fail(path_, "more than 2^30 vertices");
   }
 
+  enum class List { skipped, face, strips };
+
   void read_element(const PlyElement& element, PlyBody& body) {
     if (element.properties.empty()) return;  // rows without bytes, however many
     if (element.name == "vertex") return read_vertices(element, body);
+    const List wanted = element.name == "face"        ? List::face
+                        : element.name == "tristrips" ? List::strips
+                                                      : List::skipped;
     for (uint64_t row = 0; row < element.count; ++row) {
-      bool has_face = false;  // only the first of several lists of corners counts
+      bool found = false;  // only the first of several lists of corners counts
       for (const PlyProperty& p : element.properties) {
-        const bool is_face = element.name == "face" && p.is_list && !has_face &&
-                             (p.name == "vertex_indices" || p.name == "vertex_index");
-        has_face |= is_face;
-        read_property(p, body, element.name, row, is_face);
+        const bool is_it = !found && p.is_list && (p.name == "vertex_indices" || p.name == "vertex_index");
+        found |= is_it;
+        read_property(p, body, element.name, row, is_it ? wanted : List::skipped);
       }
     }
   }
 
-  // Reads or skips one property; the list of a face goes to corners_ and sizes_.
-  void read_property(const PlyProperty& p, PlyBody& body, const std::string& what, uint64_t row,
-                     bool is_face) {
+  // Reads or skips one property; the faces of a list go to corners_ and sizes_.
+  void read_property(const PlyProperty& p, PlyBody& body, const std::string& what, uint64_t row, List list) {
     if (!p.is_list) {
       body.read(p.type);
       return;
@@ -178,18 +181,39 @@ class PlyLoader {
       body.fail_here("a list is longer than the file, or shorter than nothing", what, row);
     }
     const auto n = static_cast<uint64_t>(count);
+    uint32_t strip = 0;  // vertices since the strip began
     for (uint64_t i = 0; i < n; ++i) {
       const double index = body.read(p.type);
-      if (!is_face) continue;
+      if (list == List::skipped) continue;
+      if (list == List::strips && index == -1) {
+        strip = 0;
+        continue;
+      }
       if (!(index >= 0) || index >= static_cast<double>(vertex_count_)) {
         body.fail_here("vertex index " +
                            std::to_string(static_cast<long long>(std::clamp(index, -1e15, 1e15))) +
                            " is out of range (" + std::to_string(vertex_count_) + " in the file)",
                        what, row);
       }
-      corners_.push_back(static_cast<uint32_t>(index));
+      if (list == List::strips) {
+        add_to_strip(static_cast<uint32_t>(index), strip++);
+      } else {
+        corners_.push_back(static_cast<uint32_t>(index));
+      }
     }
-    if (is_face) sizes_.push_back(static_cast<uint32_t>(n));
+    if (list == List::face) sizes_.push_back(static_cast<uint32_t>(n));
+  }
+
+  // Each vertex makes a triangle with the two before it, turned the other way every time. Repeated
+  // vertices only lead the strip elsewhere.
+  void add_to_strip(uint32_t vertex, uint32_t number) {
+    last_[number % 3] = vertex;
+    if (number < 2) return;
+    const uint32_t a = last_[(number + 1) % 3], b = last_[(number + 2) % 3];
+    if (a == b || b == vertex || a == vertex) return;
+    const bool turned = number % 2 == 1;
+    corners_.insert(corners_.end(), {turned ? b : a, turned ? a : b, vertex});
+    sizes_.push_back(3);
   }
 
   void read_vertices(const PlyElement& element, PlyBody& body) {
@@ -210,7 +234,7 @@ class PlyLoader {
       for (size_t i = 0; i < slots.size(); ++i) {
         const PlyProperty& p = element.properties[i];
         if (p.is_list) {
-          read_property(p, body, element.name, row, false);
+          read_property(p, body, element.name, row, List::skipped);
         } else {
           value[slots[i]] = body.read(p.type);
         }
@@ -282,8 +306,9 @@ class PlyLoader {
   int threads_;
   uint64_t vertex_count_ = 0;
   Mesh mesh_;
-  std::vector<uint32_t> corners_;  // of all faces, one after the other
-  std::vector<uint32_t> sizes_;    // of each face
+  std::vector<uint32_t> corners_;   // of all faces, one after the other
+  std::vector<uint32_t> sizes_;     // of each face
+  std::array<uint32_t, 3> last_{};  // vertices of a strip
   size_t dropped_ = 0;
 };
 
