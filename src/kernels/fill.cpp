@@ -110,12 +110,17 @@ uint32_t keep_there(const RasterView& view, uint32_t number, int x, int y, uint3
 // Recomputes the least inverse depth of a covered block.
 void update_least(Tile& tile, int block) {
   const float* depth = tile.seen->inverse_depth + block * kPacketSize;
-  float low = depth[0];
-  for (int i = 1; i < kPacketSize; ++i) low = depth[i] < low ? depth[i] : low;
-  tile.least[block] = low;
+  Float low = load(depth);
+  for (int g = kLanes; g < kPacketSize; g += kLanes) low = least(load(depth + g), low);
+  alignas(64) float lanes[kLanes];
+  store(lanes, low);
+  float lowest = lanes[0];
+  for (int i = 1; i < kLanes; ++i) lowest = lanes[i] < lowest ? lanes[i] : lowest;
+  tile.least[block] = lowest;
+
   tile.least_of_all = tile.least[0];
-  for (int b = 1; b < kTileBlocks; ++b) {
-    if (tile.least[b] < tile.least_of_all) tile.least_of_all = tile.least[b];
+  for (int i = 1; i < kTileBlocks; ++i) {
+    if (tile.least[i] < tile.least_of_all) tile.least_of_all = tile.least[i];
   }
 }
 
