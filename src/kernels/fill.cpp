@@ -110,12 +110,17 @@ uint32_t keep_there(const RasterView& view, uint32_t number, int x, int y, uint3
 // Recomputes the least inverse depth of a covered block.
 void update_least(Tile& tile, int block) {
   const float* depth = tile.seen->inverse_depth + block * kPacketSize;
-  float low = depth[0];
-  for (int i = 1; i < kPacketSize; ++i) low = depth[i] < low ? depth[i] : low;
-  tile.least[block] = low;
+  Float low = load(depth);
+  for (int g = kLanes; g < kPacketSize; g += kLanes) low = least(load(depth + g), low);
+  alignas(64) float lanes[kLanes];
+  store(lanes, low);
+  float lowest = lanes[0];
+  for (int i = 1; i < kLanes; ++i) lowest = lanes[i] < lowest ? lanes[i] : lowest;
+  tile.least[block] = lowest;
+
   tile.least_of_all = tile.least[0];
-  for (int b = 1; b < kTileBlocks; ++b) {
-    if (tile.least[b] < tile.least_of_all) tile.least_of_all = tile.least[b];
+  for (int i = 1; i < kTileBlocks; ++i) {
+    if (tile.least[i] < tile.least_of_all) tile.least_of_all = tile.least[i];
   }
 }
 
@@ -188,25 +193,48 @@ void fill_triangle(const RasterView& view, const SetupTriangle& t, Tile& tile) {
 }
 
 // Pixels that are not wanted count as covered by something nearer than all.
-void clear(const PixelBox& window, float unwanted_depth, Tile& tile) {
-  for (int block = 0; block < kTileBlocks; ++block) {
-    const int x = block % kTileBlocksAcross * kBlockSide, y = block / kTileBlocksAcross * kBlockSide;
-    tile.covered[block] = 0;
-    tile.least[block] = 0;
-    for (int i = 0; i < kPacketSize; ++i) {
-      const int px = x + i % kBlockSide, py = y + i / kBlockSide;
-      const bool wanted = px >= window.x0 && px < window.x1 && py >= window.y0 && py < window.y1;
-      if (!wanted) tile.covered[block] |= uint64_t{1} << i;
-      tile.seen->inverse_depth[block * kPacketSize + i] = wanted ? 0.0f : unwanted_depth;
-      tile.seen->triangle[block * kPacketSize + i] = kNoTriangle;
-    }
+void mask_unwanted(const PixelBox& window, int block, Tile& tile) {
+  const int x = block % kTileBlocksAcross * kBlockSide, y = block / kTileBlocksAcross * kBlockSide;
+  for (int i = 0; i < kPacketSize; ++i) {
+    const int px = x + i % kBlockSide, py = y + i / kBlockSide;
+    if (px >= window.x0 && px < window.x1 && py >= window.y0 && py < window.y1) continue;
+    tile.covered[block] |= uint64_t{1} << i;
+    tile.seen->inverse_depth[block * kPacketSize + i] = __builtin_inff();
   }
+}
+
+void clear(const PixelBox& window, Tile& tile) {
+  for (int g = 0; g < kTileBlocks * kPacketSize; g += kLanes) {
+    store(tile.seen->inverse_depth + g, Float(0.0f));
+    store(tile.seen->triangle + g, Uint(kNoTriangle));
+  }
+  for (int block = 0; block < kTileBlocks; ++block) tile.covered[block] = 0, tile.least[block] = 0;
   tile.least_of_all = 0;
+  const bool whole = window.x0 == 0 && window.y0 == 0 && window.x1 == kTileSide && window.y1 == kTileSide;
+  for (int block = 0; block < kTileBlocks && !whole; ++block) mask_unwanted(window, block, tile);
 }
 
 void forget_unwanted(const Tile& tile) {
-  for (int i = 0; i < kTileBlocks * kPacketSize; ++i) {
-    if (tile.seen->triangle[i] == kNoTriangle) tile.seen->inverse_depth[i] = 0;
+  for (int g = 0; g < kTileBlocks * kPacketSize; g += kLanes) {
+    const Mask nothing = load(tile.seen->triangle + g) == Uint(kNoTriangle);
+    store(tile.seen->inverse_depth + g, select(nothing, Float(0.0f), load(tile.seen->inverse_depth + g)));
+  }
+}
+
+inline const SetupTriangle& setup_triangle(const RasterView& view, SetupReference r) {
+  return view.chunks[r >> kPlaceBits][r & ((1u << kPlaceBits) - 1)];
+}
+
+// The triangles of a bin lie scattered in memory: each is asked for some turns before its own.
+void fill_bin(const RasterView& view, uint32_t bin, Tile& tile) {
+  constexpr uint64_t ahead = 6;
+  const uint64_t first = view.first_reference[bin], end = view.first_reference[bin + 1];
+  for (uint64_t i = first; i < first + ahead && i < end; ++i)
+    __builtin_prefetch(&setup_triangle(view, view.references[i]));
+  for (uint64_t i = first; i < end; ++i) {
+    if (i + ahead < end) __builtin_prefetch(&setup_triangle(view, view.references[i + ahead]));
+    const SetupTriangle& t = setup_triangle(view, view.references[i]);
+    if (t.greatest >= tile.least_of_all) fill_triangle(view, t, tile);
   }
 }
 
@@ -220,18 +248,14 @@ void fill_tile(const RasterView& view, int tile_x, int tile_y, TileVisibility& o
   const PixelBox& w = view.window;
   tile.window = intersection({w.x0 - tile.x, w.y0 - tile.y, w.x1 - tile.x, w.y1 - tile.y},
                              {0, 0, kTileSide, kTileSide});
-  clear(tile.window, __builtin_inff(), tile);
+  clear(tile.window, tile);
 
   for (int level = 0; level < kBinLevels; ++level) {
     const int shift = level * kBinLevelShift;
     const uint32_t bin =
         view.grid.first_bin[level] +
         static_cast<uint32_t>((tile_y >> shift) * view.grid.across[level] + (tile_x >> shift));
-    for (uint64_t i = view.first_reference[bin]; i < view.first_reference[bin + 1]; ++i) {
-      const SetupReference r = view.references[i];
-      const SetupTriangle& t = view.chunks[r >> kPlaceBits][r & ((1u << kPlaceBits) - 1)];
-      if (t.greatest >= tile.least_of_all) fill_triangle(view, t, tile);
-    }
+    fill_bin(view, bin, tile);
   }
   forget_unwanted(tile);
 }

@@ -41,7 +41,7 @@ struct PixelBox {
 // A triangle ready to be filled: of non-zero area, its corners in the order that makes the inside
 // positive for every edge. The plane gives the inverse depth at a point of the screen in pixels; it
 // belongs to the true triangle, not the snapped one, and the range is that of its visible corners.
-struct SetupTriangle {
+struct alignas(64) SetupTriangle {
   int32_t x[3], y[3];         // 1/256 pixel
   uint32_t triangle;          // number in Mesh::triangles; parts of a clipped triangle share it
   float least, greatest;      // inverse depth
