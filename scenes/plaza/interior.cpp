@@ -81,7 +81,7 @@ void cafe_bar(Mesh& mesh, const Frame& f, double width, double depth) {
 }  // namespace
 
 void cafe(Mesh& mesh, const Frame& f, double width, double height, double depth) {
-  room(mesh, Surface::plaster_ochre, Surface::floorboards, f, {0.1, 0, -depth},
+  room(mesh, Surface::interior, Surface::floorboards, f, {0.1, 0, -depth},
        {width - 0.1, height, -kReveal}, kAllSides - kFront);
   if (mesh.detail.level < 0.2) return;
   cafe_bar(mesh, f, width, depth);

@@ -53,6 +53,8 @@ enum class Surface : uint8_t {
   cloth_blue,
   cloth_red,
   cloth_grey,
+  lilac,
+  rose,
   skin,
   hair,
   far_wall,

@@ -108,6 +108,7 @@ void figure(Mesh& mesh, const Frame& frame, const Figure& figure);
 void street_lamp(Mesh& mesh, const Frame& frame);
 void bench(Mesh& mesh, const Frame& frame);
 void bollard(Mesh& mesh, const Frame& frame);
+void flower_stall(Mesh& mesh, const Frame& frame);
 void kiosk(Mesh& mesh, const Frame& frame);
 void chair(Mesh& mesh, const Frame& frame, Surface paint);
 void cafe_table(Mesh& mesh, const Frame& frame, uint32_t seed);

@@ -67,9 +67,22 @@ void castle(Mesh& mesh, const Frame& f) {
 void church(Mesh& mesh, const Frame& f) {
   box(mesh, Surface::far_wall, f, {-9, 0, -30}, {9, 27, 0}, kOnGround);
   triangle(mesh, Surface::far_wall, point(f, {-9, 27, 0}), point(f, {9, 27, 0}), point(f, {0, 32, 0}));
+  // Pilasters, the gable's cornice and a round window.
+  for (const double x : {-8.6, -2.6, 2.6, 8.6}) {
+    box(mesh, Surface::far_stone, f, {x - 0.45, 0, -0.1}, {x + 0.45, 26, 0.35}, kOnGround);
+  }
+  box(mesh, Surface::far_stone, f, {-9.3, 26, -0.2}, {9.3, 27, 0.8});
+  lathe(mesh, Surface::far_stone, leaned(moved(f, {0, 22.5, 0}), 90),
+        {{2.2, 0}, {2.2, 0.4}, {1.6, 0.4}, {1.6, 0.1}}, divisions(mesh.detail, 20, 8));
+  lathe(mesh, Surface::interior, leaned(moved(f, {0, 22.5, 0}), 90), {{1.7, 0.15}, {0, 0.15}},
+        divisions(mesh.detail, 20, 8));
   for (const double x : {-11.5, 11.5}) {
     const Frame t = moved(f, {x, 0, -2});
     box(mesh, Surface::far_wall, t, {-3.2, 0, -3.2}, {3.2, 33, 3.2}, kOnGround);
+    for (const double cx : {-2.85, 2.85}) {
+      box(mesh, Surface::far_stone, t, {cx - 0.4, 0, 3.1}, {cx + 0.4, 33, 3.4}, kOnGround);
+    }
+    box(mesh, Surface::far_stone, t, {-3.5, 21.5, -3.5}, {3.5, 22.1, 3.5});
     box(mesh, Surface::far_stone, t, {-3.6, 33, -3.6}, {3.6, 33.7, 3.6});
     for (const double cx : {-2.3, 2.3}) {
       for (const double cz : {-2.3, 2.3})
@@ -90,7 +103,7 @@ void church(Mesh& mesh, const Frame& f) {
           divisions(mesh.detail, 12, 6));
     box(mesh, Surface::interior, t, {-0.8, 24, 3.15}, {0.8, 28, 3.24}, kFront);
   }
-  for (const double x : {-4.5, 0.0, 4.5})
+  for (const double x : {-4.5, 4.5})
     box(mesh, Surface::interior, f, {x - 0.9, 20.5, -0.1}, {x + 0.9, 24.5, 0.05}, kFront);
   lathe(mesh, Surface::far_wall, moved(f, {0, 26, -24}),
         {{7.5, 0},

@@ -109,6 +109,33 @@ void cafe_table(Mesh& mesh, const Frame& f, uint32_t seed) {
   }
 }
 
+// A flower seller's tiers under a parasol.
+void flower_stall(Mesh& mesh, const Frame& f) {
+  const Surface petals[] = {Surface::cloth_red, Surface::tram_yellow, Surface::paint_white, Surface::lilac,
+                            Surface::rose};
+  for (int tier = 0; tier < 3; ++tier) {
+    const double y = 0.3 + 0.26 * tier, z = 0.55 - 0.42 * tier;
+    box(mesh, Surface::bench, f, {-1.15, y - 0.3, z - 0.2}, {1.15, y, z + 0.2}, kOnGround);
+    for (int pot = 0; pot < 7; ++pot) {
+      const uint32_t id = hash(static_cast<uint32_t>(tier), static_cast<uint32_t>(pot), 33);
+      const Frame at = moved(f, {-0.99 + 0.33 * pot, y, z});
+      lathe(mesh, Surface::steel, at, {{0.08, 0}, {0.12, 0.22}, {0.1, 0.22}, {0, 0.15}},
+            divisions(mesh.detail, 8, 5));
+      Random random{id, 0};
+      const int heads = many(mesh.detail, 9, 3);
+      for (int k = 0; k < heads; ++k) {
+        const double a = 2.4 * k, r = 0.14 * std::sqrt((k + 0.5) / heads);
+        const Vec3d head{r * std::sin(a), 0.36 + between(random, -0.03, 0.06) - 1.5 * r * r, r * std::cos(a)};
+        ellipsoid(mesh, k % 5 == 4 ? Surface::paint_green : petals[id % 5], moved(at, head),
+                  {0.055, 0.045, 0.055}, divisions(mesh.detail, 6, 4));
+      }
+    }
+  }
+  bar(mesh, Surface::paint_white, f, {0, 0, -0.75}, {0, 2.5, -0.75}, 0.03, 6);
+  lathe(mesh, Surface::canvas, moved(f, {0, 0, -0.3}), {{1.62, 1.98}, {1.7, 2.18}, {0.1, 2.66}, {0, 2.66}}, 8,
+        Shading::faceted, kPi / 8);
+}
+
 // The quiosque: an octagon of green iron with a counter, a canopy and an onion roof.
 void kiosk(Mesh& mesh, const Frame& f) {
   begin_group(mesh, "kiosk");

@@ -50,7 +50,7 @@ Color azulejo(double u, double v) {
   const double x = wrapped(u * kMotifs) - 0.5, y = wrapped(v * kMotifs) - 0.5;
   const uint32_t id =
       hash(static_cast<uint32_t>(u * kMotifs * 2), static_cast<uint32_t>(v * kMotifs * 2), 61);
-  const Color white{0.86, 0.875, 0.87}, blue{0.20, 0.33, 0.62}, pale{0.55, 0.66, 0.82};
+  const Color white{0.80, 0.825, 0.84}, blue{0.30, 0.42, 0.66}, pale{0.62, 0.71, 0.83};
   const auto flower = [](double px, double py, double size, int petals) {
     const double r = std::sqrt(px * px + py * py), a = std::atan2(py, px);
     return r < size * (0.72 + 0.28 * std::cos(petals * a));

@@ -28,6 +28,26 @@ void side_wall(Mesh& mesh, const Frame& f) {
   }
 }
 
+// A 2 and an 8 out of seven strokes each.
+void line_number(Mesh& mesh, const Frame& f) {
+  const struct {
+    double x;
+    unsigned
+        strokes;  // from the least bit: top, upper left, upper right, middle, lower left, lower right, bottom
+  } digits[] = {{-0.085, 0b1011101}, {0.085, 0b1111111}};
+  const Vec2d low[] = {{-0.05, 0.14}, {-0.05, 0.09}, {0.03, 0.09},  {-0.05, 0.08},
+                       {-0.05, 0.02}, {0.03, 0.02},  {-0.05, 0.005}};
+  const Vec2d high[] = {{0.05, 0.16},  {-0.03, 0.14}, {0.05, 0.14}, {0.05, 0.095},
+                        {-0.03, 0.08}, {0.05, 0.08},  {0.05, 0.025}};
+  for (const auto& digit : digits) {
+    for (unsigned s = 0; s < 7; ++s) {
+      if (!(digit.strokes >> s & 1)) continue;
+      box(mesh, Surface::globe, f, {digit.x + low[s].x, low[s].y, 0}, {digit.x + high[s].x, high[s].y, 0.008},
+          kOnWall);
+    }
+  }
+}
+
 // z of the frame points out of the front.
 void front(Mesh& mesh, const Frame& f) {
   const double w = kHalfWidth - 0.06, z = 0;
@@ -44,6 +64,7 @@ void front(Mesh& mesh, const Frame& f) {
             divisions(mesh.detail, 12, 6));
   box(mesh, Surface::paint_white, f, {-0.35, kEave + 0.02, z - 0.1}, {0.35, kEave + 0.3, z + 0.02});
   box(mesh, Surface::hair, f, {-0.29, kEave + 0.07, z}, {0.29, kEave + 0.25, z + 0.03}, kOnWall);
+  line_number(mesh, moved(f, {0, kEave + 0.07, z + 0.03}));
   box(mesh, Surface::iron, f, {-0.8, 0.25, z - 0.1}, {0.8, 0.4, z + 0.2});
 }
 
@@ -87,8 +108,16 @@ void tram(Mesh& mesh, const Frame& f) {
   box(mesh, Surface::tram_cream, f, {-kHalfLength - 0.05, kEave - 0.02, -kHalfWidth - 0.06},
       {kHalfLength + 0.05, kEave + 0.04, kHalfWidth + 0.06});
   barrel(kHalfLength, kHalfWidth, kEave + 0.04, 0.22, Surface::tram_cream);
-  barrel(3.2, 0.62, kEave + 0.2, 0.26, Surface::tram_cream);
-  bar(mesh, Surface::iron, f, {0.2, kEave + 0.4, 0}, {-3.9, 5.3, 0}, 0.03, 5);
+  box(mesh, Surface::tram_yellow, f, {-3.2, kEave + 0.1, -0.62}, {3.2, kEave + 0.36, 0.62}, kOnGround);
+  for (int i = 0; i < 8; ++i) {
+    for (const double side : {0.0, 180.0}) {
+      const double x = -3.1 + i * 0.78;
+      box(mesh, Surface::hair, turned(f, side), {x, kEave + 0.27, 0.6}, {x + 0.6, kEave + 0.34, 0.625},
+          kOnWall);
+    }
+  }
+  barrel(3.3, 0.68, kEave + 0.36, 0.14, Surface::tram_cream);
+  bar(mesh, Surface::iron, f, {0.2, kEave + 0.45, 0}, {-3.9, 5.3, 0}, 0.03, 5);
   // Underframe, wheels and lifeguards.
   box(mesh, Surface::tyre, f, {-2.2, 0.3, -0.8}, {2.2, kFloor - 0.1, 0.8});
   for (const double x : {-1.45, 1.45}) {
