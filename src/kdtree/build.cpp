@@ -13,13 +13,13 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <span>
 
 namespace vitral {
 namespace {
 
-// A node still to be decided on.
-struct Work {
-  std::vector<Reference> references;
+// A node still to be decided on, apart from its references.
+struct Node {
   Box cell;
   int depth = 0;
   size_t spare = 0;  // references that its subtree may hold beyond its own
@@ -81,119 +81,187 @@ void cut(const Context& context, const Reference& whole, const Plane& plane, Ref
   }
 }
 
-// Decides on a node: true when it is split, its references then being in `below` and `above`.
-bool try_split(const Context& context, Work& work, Plane& plane, Work& below, Work& above) {
-  const size_t n = work.references.size();
-  if (n <= 1 || work.depth >= context.max_depth) return false;
-  plane = n > context.settings.binned_above ? best_plane_binned(work.references, work.cell, context.settings.costs)
-                                            : best_plane_exact(work.references, work.cell, context.settings.costs);
-  if (!(plane.cost < context.settings.costs.intersection * static_cast<float>(n))) return false;
+bool find_plane(const Context& context, std::span<const Reference> references, const Node& node, Plane& plane) {
+  const size_t n = references.size();
+  if (n <= 1 || node.depth >= context.max_depth) return false;
+  plane = n > context.settings.binned_above ? best_plane_binned(references, node.cell, context.settings.costs)
+                                            : best_plane_exact(references, node.cell, context.settings.costs);
+  return plane.cost < context.settings.costs.intersection * static_cast<float>(n);
+}
 
-  for (const Reference& r : work.references) {
-    const float lo = component(r.box.min, plane.axis), hi = component(r.box.max, plane.axis);
-    const bool planar = lo == plane.position && hi == plane.position;
-    const bool is_below = planar ? plane.planar == PlanarSide::below : lo < plane.position;
-    const bool is_above = planar ? plane.planar == PlanarSide::above : hi > plane.position;
-    if (is_below && is_above) {
-      Reference b, a;
-      cut(context, r, plane, b, a);
-      below.references.push_back(b);
-      above.references.push_back(a);
-    } else {
-      (is_below ? below : above).references.push_back(r);
-    }
+struct Sides {
+  bool below, above;
+};
+Sides sides_of(const Reference& r, const Plane& plane) {
+  const float lo = component(r.box.min, plane.axis), hi = component(r.box.max, plane.axis);
+  if (lo == plane.position && hi == plane.position) {
+    return {plane.planar == PlanarSide::below, plane.planar == PlanarSide::above};
   }
-  const size_t total = below.references.size() + above.references.size();
-  if (total - n > work.spare || (below.references.size() == n && above.references.size() == n)) {
-    below.references.clear();
-    above.references.clear();
-    return false;
+  return {lo < plane.position, hi > plane.position};
+}
+
+// How many references go to each side. A split that would use up more references than the node has to
+// spare, or that separates nothing, is not made.
+struct Counts {
+  size_t below = 0, above = 0;
+};
+bool count_sides(std::span<const Reference> references, const Node& node, const Plane& plane, Counts& counts) {
+  for (const Reference& r : references) {
+    const Sides sides = sides_of(r, plane);
+    counts.below += sides.below;
+    counts.above += sides.above;
   }
-  const size_t spare = work.spare - (total - n);
-  below.spare = static_cast<size_t>(static_cast<double>(spare) * static_cast<double>(below.references.size()) /
-                                    static_cast<double>(total));
+  const size_t n = references.size();
+  return counts.below + counts.above - n <= node.spare && !(counts.below == n && counts.above == n);
+}
+
+// The children of a node; what references it has to spare are theirs in proportion to their own.
+void make_children(const Node& node, const Plane& plane, const Counts& counts, size_t references, Node& below, Node& above) {
+  const size_t total = counts.below + counts.above, spare = node.spare - (total - references);
+  below.spare = static_cast<size_t>(static_cast<double>(spare) * static_cast<double>(counts.below) / static_cast<double>(total));
   above.spare = spare - below.spare;
-  below.cell = above.cell = work.cell;
+  below.cell = above.cell = node.cell;
   component_of(below.cell.max, plane.axis) = plane.position;
   component_of(above.cell.min, plane.axis) = plane.position;
-  below.depth = above.depth = work.depth + 1;
-  std::vector<Reference>().swap(work.references);
-  return true;
+  below.depth = above.depth = node.depth + 1;
 }
 
 KdNode inner_node(const Plane& plane, size_t first_child) {
   return {as_bits(plane.position), static_cast<uint32_t>(first_child) << 2 | static_cast<uint32_t>(plane.axis)};
 }
 
-KdNode leaf_node(const std::vector<Reference>& references, std::vector<uint32_t>& out) {
+KdNode leaf_node(std::span<const Reference> references, std::vector<uint32_t>& out) {
   const KdNode leaf{static_cast<uint32_t>(references.size()), static_cast<uint32_t>(out.size()) << 2 | 3u};
   for (const Reference& r : references) out.push_back(r.triangle);
   std::sort(out.end() - static_cast<std::ptrdiff_t>(references.size()), out.end());
   return leaf;
 }
 
-// Builds everything below `work` into nodes[at]; new nodes are appended in pairs.
-void finish_subtree(const Context& context, Work work, size_t at, std::vector<KdNode>& nodes, std::vector<uint32_t>& references) {
+// A finished part of the tree; nodes[0] is its root, new nodes are appended in pairs.
+struct Subtree {
+  std::vector<KdNode> nodes;
+  std::vector<uint32_t> references;
+};
+
+// Builds everything below a node whose references are the last ones on the stack, from `first` on,
+// and takes them off. The stack is all the memory that a subtree needs while it is built.
+void finish_subtree(const Context& context, const Node& node, size_t first, size_t at, std::vector<Reference>& stack,
+                    Subtree& out) {
+  const size_t n = stack.size() - first;
+  const std::span<const Reference> references(stack.data() + first, n);
   Plane plane;
-  Work below, above;
-  if (!try_split(context, work, plane, below, above)) {
-    nodes[at] = leaf_node(work.references, references);
+  Counts counts;
+  if (!find_plane(context, references, node, plane) || !count_sides(references, node, plane, counts)) {
+    out.nodes[at] = leaf_node(references, out.references);
+    stack.resize(first);
     return;
   }
-  const size_t pair = nodes.size();
-  nodes.resize(pair + 2);
-  nodes[at] = inner_node(plane, pair);
-  finish_subtree(context, std::move(below), pair, nodes, references);
-  finish_subtree(context, std::move(above), pair + 1, nodes, references);
+  Node below, above;
+  make_children(node, plane, counts, n, below, above);
+
+  // Those below stay at the bottom, those above go on top of the old ones and then move down.
+  size_t kept = first;
+  for (size_t i = first; i < first + n; ++i) {
+    const Reference r = stack[i];
+    const Sides sides = sides_of(r, plane);
+    if (sides.below && sides.above) {
+      Reference b, a;
+      cut(context, r, plane, b, a);
+      stack[kept++] = b;
+      stack.push_back(a);
+    } else if (sides.below) {
+      stack[kept++] = r;
+    } else {
+      stack.push_back(r);
+    }
+  }
+  stack.erase(stack.begin() + static_cast<std::ptrdiff_t>(kept), stack.begin() + static_cast<std::ptrdiff_t>(first + n));
+
+  const size_t pair = out.nodes.size();
+  out.nodes.resize(pair + 2);
+  out.nodes[at] = inner_node(plane, pair);
+  finish_subtree(context, above, kept, pair + 1, stack, out);
+  finish_subtree(context, below, first, pair, stack, out);
 }
 
 // The upper part of the tree while it grows: an inner node with two children, or a finished subtree.
 struct Upper {
-  Work work;
+  Node node;
+  std::vector<Reference> references;
   Plane plane{};
   std::unique_ptr<Upper> below, above;
-  std::vector<KdNode> nodes;  // of the subtree; nodes[0] is its root
-  std::vector<uint32_t> references;
+  Subtree subtree;
 };
 
-void decide(const Context& context, Upper& node) {
-  if (node.work.references.size() > context.settings.subtree_at_most) {
-    auto below = std::make_unique<Upper>(), above = std::make_unique<Upper>();
-    if (try_split(context, node.work, node.plane, below->work, above->work)) {
-      node.below = std::move(below);
-      node.above = std::move(above);
-      return;
-    }
-    node.nodes.push_back(leaf_node(node.work.references, node.references));
-    return;
+// Splits a large node in two; true when that was worth it.
+bool split_upper(const Context& context, Upper& upper) {
+  Counts counts;
+  if (!find_plane(context, upper.references, upper.node, upper.plane) ||
+      !count_sides(upper.references, upper.node, upper.plane, counts)) {
+    return false;
   }
-  node.nodes.resize(1);
-  finish_subtree(context, std::move(node.work), 0, node.nodes, node.references);
+  upper.below = std::make_unique<Upper>();
+  upper.above = std::make_unique<Upper>();
+  make_children(upper.node, upper.plane, counts, upper.references.size(), upper.below->node, upper.above->node);
+  std::vector<Reference>&below = upper.below->references, &above = upper.above->references;
+  below.reserve(counts.below);
+  above.reserve(counts.above);
+  for (const Reference& r : upper.references) {
+    const Sides sides = sides_of(r, upper.plane);
+    if (sides.below && sides.above) {
+      Reference b, a;
+      cut(context, r, upper.plane, b, a);
+      below.push_back(b);
+      above.push_back(a);
+    } else {
+      (sides.below ? below : above).push_back(r);
+    }
+  }
+  std::vector<Reference>().swap(upper.references);
+  return true;
 }
 
-// Appends the node and all below it to the tree, depth first, and frees it on the way.
-void join(Upper& node, size_t at, KdTree& tree) {
-  if (node.below) {
+void decide(const Context& context, Upper& upper) {
+  if (upper.references.size() > context.settings.subtree_at_most) {
+    if (!split_upper(context, upper)) upper.subtree.nodes.push_back(leaf_node(upper.references, upper.subtree.references));
+    return;
+  }
+  upper.subtree.nodes.resize(1);
+  finish_subtree(context, upper.node, 0, 0, upper.references, upper.subtree);
+  std::vector<Reference>().swap(upper.references);
+  upper.subtree.nodes.shrink_to_fit();
+  upper.subtree.references.shrink_to_fit();
+}
+
+// Appends a node and all below it to the tree, depth first, and frees it on the way.
+void join(Upper& upper, size_t at, KdTree& tree) {
+  if (upper.below) {
     const size_t pair = tree.nodes.size();
     tree.nodes.resize(pair + 2);
-    tree.nodes[at] = inner_node(node.plane, pair);
-    join(*node.below, pair, tree);
-    node.below.reset();
-    join(*node.above, pair + 1, tree);
-    node.above.reset();
+    tree.nodes[at] = inner_node(upper.plane, pair);
+    join(*upper.below, pair, tree);
+    upper.below.reset();
+    join(*upper.above, pair + 1, tree);
+    upper.above.reset();
     return;
   }
   const uint32_t node_shift = static_cast<uint32_t>(tree.nodes.size()) - 1;  // nodes[1] lands at the end
   const uint32_t reference_shift = static_cast<uint32_t>(tree.references.size());
-  for (size_t i = 0; i < node.nodes.size(); ++i) {
-    KdNode n = node.nodes[i];
+  const std::vector<KdNode>& nodes = upper.subtree.nodes;
+  for (size_t i = 0; i < nodes.size(); ++i) {
+    KdNode n = nodes[i];
     n.axis_and_index += (is_leaf(n) ? reference_shift : node_shift) << 2;
     if (i == 0) tree.nodes[at] = n;
     else tree.nodes.push_back(n);
   }
-  tree.references.insert(tree.references.end(), node.references.begin(), node.references.end());
-  std::vector<KdNode>().swap(node.nodes);
-  std::vector<uint32_t>().swap(node.references);
+  tree.references.insert(tree.references.end(), upper.subtree.references.begin(), upper.subtree.references.end());
+}
+
+// How many nodes and references there are in all, so that the tree is allocated once.
+void count_all(const Upper& upper, size_t& nodes, size_t& references) {
+  nodes += upper.below ? 2 : upper.subtree.nodes.size() - 1;
+  references += upper.subtree.references.size();
+  if (upper.below) count_all(*upper.below, nodes, references), count_all(*upper.above, nodes, references);
 }
 
 int depth_limit(size_t triangles) {
@@ -208,33 +276,34 @@ KdTree build_kdtree(const std::vector<KdTriangle>& triangles, const std::vector<
                     const BuildSettings& settings, const Executor& executor) {
   KdTree tree;
   Upper root;
-  root.work.references.reserve(members.size());
+  root.references.reserve(members.size());
   for (const uint32_t id : members) {
     Reference r{{}, id};
     for (const float* c : {triangles[id].corner[0], triangles[id].corner[1], triangles[id].corner[2]}) {
       extend(r.box, Vec3{c[0], c[1], c[2]});
     }
     extend(tree.bounds, r.box);
-    root.work.references.push_back(r);
+    root.references.push_back(r);
   }
-  root.work.cell = tree.bounds;
-  root.work.spare = 3 * members.size();
+  root.node = {tree.bounds, 0, 3 * members.size()};
   const Context context{triangles, settings, depth_limit(members.size())};
 
   std::vector<Upper*> round{&root};
   while (!round.empty()) {
     executor(round.size(), [&](size_t i) { decide(context, *round[i]); });
     std::vector<Upper*> next;
-    for (Upper* node : round) {
-      if (node->below) next.insert(next.end(), {node->below.get(), node->above.get()});
+    for (Upper* upper : round) {
+      if (upper->below) next.insert(next.end(), {upper->below.get(), upper->above.get()});
     }
     round.swap(next);
   }
 
+  size_t nodes = 2, references = 0;
+  count_all(root, nodes, references);
+  tree.nodes.reserve(nodes);
+  tree.references.reserve(references);
   tree.nodes.resize(2, KdNode{0, 3});
   join(root, 0, tree);
-  tree.nodes.shrink_to_fit();
-  tree.references.shrink_to_fit();
   return tree;
 }
 

@@ -3,32 +3,35 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <vector>
 
 namespace vitral {
 namespace {
 
 constexpr int kBins = 64;
 
-// The cell's surface areas as functions of where the plane is.
+// The cell's surface areas as functions of where the plane is, all halved.
 struct CellArea {
-  float ends, around, lower, upper, whole;
+  float ends, around, lower, upper;
+  float inverse;  // 1 / area of the whole cell; 0 when that has none
 };
 CellArea cell_area(const Box& cell, int axis) {
   const Vec3 e = extent(cell);
   const float u = component(e, (axis + 1) % 3), v = component(e, (axis + 2) % 3), w = component(e, axis);
-  return {2 * u * v, 2 * (u + v), component(cell.min, axis), component(cell.max, axis), 2 * (u * v + (u + v) * w)};
+  const float whole = u * v + (u + v) * w;
+  return {u * v, u + v, component(cell.min, axis), component(cell.max, axis), whole > 0 ? 1 / whole : 0.0f};
 }
 
 // Takes the plane into account when it lies strictly inside the cell.
 void consider(const CellArea& area, int axis, float position, size_t below, size_t above, size_t planar,
               const SahCosts& costs, Plane& best) {
-  if (!(position > area.lower && position < area.upper) || !(area.whole > 0)) return;
+  if (!(position > area.lower && position < area.upper) || area.inverse == 0) return;
   const float area_below = area.ends + area.around * (position - area.lower);
   const float area_above = area.ends + area.around * (area.upper - position);
   for (const PlanarSide side : {PlanarSide::below, PlanarSide::above}) {
     const size_t b = below + (side == PlanarSide::below ? planar : 0);
     const size_t a = above + (side == PlanarSide::above ? planar : 0);
-    const float work = (area_below * static_cast<float>(b) + area_above * static_cast<float>(a)) / area.whole;
+    const float work = (area_below * static_cast<float>(b) + area_above * static_cast<float>(a)) * area.inverse;
     const float bonus = a == 0 || b == 0 ? costs.empty_bonus : 1.0f;
     const float cost = bonus * (costs.traversal + costs.intersection * work);
     if (cost < best.cost) best = {cost, position, axis, side};
@@ -38,7 +41,7 @@ void consider(const CellArea& area, int axis, float position, size_t below, size
 
 }  // namespace
 
-Plane best_plane_exact(const std::vector<Reference>& references, const Box& cell, const SahCosts& costs) {
+Plane best_plane_exact(std::span<const Reference> references, const Box& cell, const SahCosts& costs) {
   Plane best{std::numeric_limits<float>::infinity(), 0, 0, PlanarSide::below};
   const size_t n = references.size();
   std::vector<float> starts(n), ends(n), flats;
@@ -79,7 +82,7 @@ Plane best_plane_exact(const std::vector<Reference>& references, const Box& cell
   return best;
 }
 
-Plane best_plane_binned(const std::vector<Reference>& references, const Box& cell, const SahCosts& costs) {
+Plane best_plane_binned(std::span<const Reference> references, const Box& cell, const SahCosts& costs) {
   Plane best{std::numeric_limits<float>::infinity(), 0, 0, PlanarSide::below};
   Box tight;
   for (const Reference& r : references) extend(tight, r.box);

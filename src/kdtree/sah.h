@@ -9,7 +9,7 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <vector>
+#include <span>
 
 namespace vitral {
 
@@ -38,7 +38,7 @@ struct Plane {
 // The best of all planes at the ends of the references' boxes (`exact`), or of 64 planes evenly
 // spaced on each axis between the outermost ends (`binned`, Hunt, Mark and Stoll 2006; Shevtsov,
 // Soupikov and Kapustin 2007). Ties go to the lower axis, then to the lower position.
-Plane best_plane_exact(const std::vector<Reference>& references, const Box& cell, const SahCosts& costs);
-Plane best_plane_binned(const std::vector<Reference>& references, const Box& cell, const SahCosts& costs);
+Plane best_plane_exact(std::span<const Reference> references, const Box& cell, const SahCosts& costs);
+Plane best_plane_binned(std::span<const Reference> references, const Box& cell, const SahCosts& costs);
 
 }  // namespace vitral
