@@ -10,7 +10,7 @@ namespace vitral {
 
 struct BuildSettings {
   SahCosts costs;
-  size_t binned_above = 48;      // references in a node above which planes are binned
+  size_t binned_above = 24;      // references in a node above which planes are binned
   size_t subtree_at_most = 4096; // nodes with more references are split one by one, smaller ones as one task
 };
 

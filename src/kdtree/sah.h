@@ -20,7 +20,7 @@ struct Reference {
 };
 
 struct SahCosts {
-  float traversal = 1.0f;
+  float traversal = 2.0f;
   float intersection = 1.5f;
   float empty_bonus = 0.8f;  // factor on the cost of a plane that cuts off empty space
 };
