@@ -187,6 +187,9 @@ TEST(ImageFile, RefusesPicturesThatAreBrokenOrTooLarge) {
   write_png(folder.path("b"), picture(64, 64, 255));
   const std::string png = folder.read("b");
   EXPECT_NE(error(png.substr(0, png.size() / 2)), "");
+  std::string critical = png;
+  critical.insert(33, std::string("\0\0\0\0\n\nAB\0\0\0\0", 12));  // a chunk called "\n\nAB"
+  EXPECT_NE(error(critical), "");
   EXPECT_NE(error_of<InputError>([&] { read_png(folder.write("c", small_bmp())); }).find("not a PNG file"),
             std::string::npos);
 }

@@ -2,6 +2,7 @@
 
 #include "io/decode_texture.h"
 #include "io/file.h"
+#include "io/jpeg_check.h"
 #include "io/png.h"
 #include "io/stb.h"
 
@@ -38,25 +39,17 @@ uint64_t pixels_per_byte(std::string_view bytes) {
   return is_png(bytes) ? 8 * 1032 : is_jpeg(bytes) ? 512 : is_bmp(bytes) ? 8 : 128;
 }
 
-// Every scan of a progressive JPEG goes over the whole picture: a short file could keep us for hours.
-void check_jpeg_scans(const std::string& path, std::string_view bytes) {
-  size_t scans = 0;
-  for (size_t at = bytes.find("\xff\xda"); at != std::string_view::npos; at = bytes.find("\xff\xda", at + 2))
-    ++scans;
-  if (scans > 1000) fail(path, "more than 1000 JPEG scans");
-}
-
 // Decodes to `channels` bytes a pixel after checking that the size is believable.
 Decoded decode(const std::string& path, std::string_view bytes, int channels, int& width, int& height,
                int& stored) {
   if (bytes.empty()) fail(path, "the file is empty");
   const auto* const data = reinterpret_cast<const uint8_t*>(bytes.data());
   const int length = static_cast<int>(bytes.size());
+  if (is_jpeg(bytes)) check_jpeg(path, bytes);
   {
     const StbAllocationLimit limit(size_t{1} << 20);
     if (stbi_info_from_memory(data, length, &width, &height, &stored) == 0) {
-      fail(path,
-           std::string("not a picture in PNG, JPEG, TGA or BMP format (") + stbi_failure_reason() + ")");
+      fail(path, "not a picture in PNG, JPEG, TGA or BMP format");
     }
   }
   if (width <= 0 || height <= 0) fail(path, "the picture is empty");
@@ -69,14 +62,13 @@ Decoded decode(const std::string& path, std::string_view bytes, int channels, in
     fail(path,
          "too short for a picture of " + std::to_string(width) + " x " + std::to_string(height) + " pixels");
   }
-  if (is_jpeg(bytes)) check_jpeg_scans(path, bytes);
 
   // The largest block is one of 4 channels of 16 bits, or unpacked data with room to double.
   const StbAllocationLimit limit(
       static_cast<size_t>(16 * pixels + 64 * static_cast<uint64_t>(height) + 2 * bytes.size()) +
       (size_t{1} << 20));
   Decoded texels(stbi_load_from_memory(data, length, &width, &height, &stored, channels));
-  if (!texels) fail(path, std::string("the picture is broken (") + stbi_failure_reason() + ")");
+  if (!texels) fail(path, "the picture is broken, or of a kind that is not supported");
   return texels;
 }
 

@@ -8,7 +8,8 @@
 #define STBI_NO_STDIO
 #define STBI_NO_LINEAR
 #define STBI_NO_HDR
-#define STBI_NO_SIMD  // the same texels on every machine
+#define STBI_NO_SIMD             // the same texels on every machine
+#define STBI_NO_FAILURE_STRINGS  // one of them is put together in memory that all threads share
 #define STBI_MAX_DIMENSIONS 16384
 #include <stb_image.h>
 
