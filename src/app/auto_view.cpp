@@ -165,11 +165,9 @@ Box core(const Mesh& mesh) {
     }
   }
   for (std::vector<float>& sorted : values) std::sort(sorted.begin(), sorted.end());
-  const auto at = [&](size_t part) {
-    const auto value = [&](size_t axis) { return values[axis][(values[axis].size() - 1) * part / 100]; };
-    return Vec3{value(0), value(1), value(2)};
-  };
-  return {at(5), at(95)};
+  const size_t last = values[0].size() - 1, left_out = last / 20;
+  const auto at = [&](size_t i) { return Vec3{values[0][i], values[1][i], values[2][i]}; };
+  return {at(left_out), at(last - left_out)};
 }
 
 std::vector<View> candidate_views(const Mesh& mesh, float aspect, const ViewWishes& wishes) {

@@ -168,7 +168,7 @@ void load_job(Job& job, const Options& options) {
   const Box box = bounds(scene.mesh);
   if (is_empty(box)) fail(job.input, "there is no triangle in it");
 
-  if (job.automatic) find_view(job, options);
+  if (job.automatic && options.command != Command::info) find_view(job, options);
   if (options.sun) turn_sun(*options.sun, scene);
   job.load_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
