@@ -1,6 +1,7 @@
 // The camera that a bare mesh gets: all of it in the picture, and not lost in it.
 #include "app/auto_view.h"
 
+#include "io/project.h"
 #include "math/pinhole.h"
 #include "vitral/error.h"
 
@@ -22,6 +23,18 @@ struct Framing {
   double fill() const { return std::max(right - left, top - bottom) / 2; }
   bool inside() const { return left > -1 && right < 1 && bottom > -1 && top < 1; }
 };
+
+// A mesh whose triangles have the eight corners of a box.
+Mesh box_mesh(const Box& box) {
+  Mesh mesh;
+  for (int i = 0; i < 8; ++i) {
+    mesh.positions.push_back(
+        {i & 1 ? box.max.x : box.min.x, i & 2 ? box.max.y : box.min.y, i & 4 ? box.max.z : box.min.z});
+  }
+  mesh.triangles = {{0, 1, 2}, {3, 4, 5}, {5, 6, 7}};
+  mesh.triangle_material = {0, 0, 0};
+  return mesh;
+}
 
 Framing frame(const Camera& camera, const Box& box, float aspect) {
   const int height = 1000;
@@ -46,7 +59,7 @@ Framing frame(const Camera& camera, const Box& box, float aspect) {
 }
 
 void expect_well_framed(const Box& box, float aspect, const ViewWishes& wishes, const std::string& what) {
-  const Camera camera = auto_camera(box, aspect, wishes);
+  const Camera camera = auto_camera(box_mesh(box), aspect, wishes);
   const Framing framing = frame(camera, box, aspect);
   EXPECT_TRUE(framing.inside()) << what << ": x " << framing.left << ".." << framing.right << ", y "
                                 << framing.bottom << ".." << framing.top;
@@ -88,7 +101,7 @@ TEST(AutoView, FramesWhateverTheWayItLooksAndTheAngle) {
 }
 
 TEST(AutoView, LooksFromTheFrontTheRightAndAbove) {
-  const Camera camera = auto_camera({{-1, -1, -1}, {1, 1, 1}}, 1, {});
+  const Camera camera = auto_camera(box_mesh({{-1, -1, -1}, {1, 1, 1}}), 1, {});
   EXPECT_GT(camera.position.x, 0);
   EXPECT_GT(camera.position.y, 0);
   EXPECT_GT(camera.position.z, 0);
@@ -98,7 +111,7 @@ TEST(AutoView, LooksFromTheFrontTheRightAndAbove) {
 TEST(AutoView, SinglePointsAreSeenToo) {
   for (const Vec3& point : {Vec3{0, 0, 0}, Vec3{5, 5, 5}, Vec3{1e6f, 0, 0}}) {
     const Box box{point, point};
-    const Camera camera = auto_camera(box, 1, {});
+    const Camera camera = auto_camera(box_mesh(box), 1, {});
     const Framing framing = frame(camera, box, 1);
     EXPECT_TRUE(framing.inside());
     EXPECT_LT(static_cast<double>(camera.near), framing.nearest);
@@ -111,7 +124,7 @@ TEST(AutoView, WishesAreKept) {
   const Box box{{-1, -1, -1}, {1, 1, 1}};
   ViewWishes wishes;
   wishes.eye = Vec3{10, 0, 0};
-  Camera camera = auto_camera(box, 1, wishes);
+  Camera camera = auto_camera(box_mesh(box), 1, wishes);
   EXPECT_EQ(camera.position, (Vec3{10, 0, 0}));
   EXPECT_NEAR(camera.view.x, -1, 1e-6) << "towards the middle";
   EXPECT_LT(camera.near, 9);
@@ -121,31 +134,31 @@ TEST(AutoView, WishesAreKept) {
   wishes.far = 77.0f;
   wishes.fov = 33.0f;
   wishes.up = Vec3{0, 0, 1};
-  camera = auto_camera(box, 1, wishes);
+  camera = auto_camera(box_mesh(box), 1, wishes);
   EXPECT_EQ(camera.near, 0.25f);
   EXPECT_EQ(camera.far, 77);
   EXPECT_EQ(camera.fov, 33);
   EXPECT_EQ(camera.up, (Vec3{0, 0, 1}));
 
   wishes.eye = Vec3{0, 0, 0};  // in the middle itself
-  EXPECT_GT(length(auto_camera(box, 1, wishes).view), 0);
+  EXPECT_GT(length(auto_camera(box_mesh(box), 1, wishes).view), 0);
   wishes.eye = Vec3{0, 50, 0};  // straight above, with no wish for up
   wishes.up.reset();
-  EXPECT_NO_THROW(auto_camera(box, 1, wishes));
+  EXPECT_NO_THROW(auto_camera(box_mesh(box), 1, wishes));
 
   wishes.view = Vec3{0, 0, 1};
   wishes.up = Vec3{0, 0, 2};
-  EXPECT_THROW(auto_camera(box, 1, wishes), UsageError);
+  EXPECT_THROW(auto_camera(box_mesh(box), 1, wishes), UsageError);
   wishes.up.reset();
   wishes.near = 80.0f;
-  EXPECT_THROW(auto_camera(box, 1, wishes), UsageError);
+  EXPECT_THROW(auto_camera(box_mesh(box), 1, wishes), UsageError);
 }
 
 TEST(AutoView, TheSunShinesOnWhatTheCameraSees) {
   Scene scene;
   const Box box{{-1, -1, -1}, {1, 1, 1}};
-  const Camera camera = auto_camera(box, 1, {});
-  light_automatically(camera, scene);
+  const Camera camera = auto_camera(box_mesh(box), 1, {});
+  light_automatically({camera, Place::outside}, scene);
   ASSERT_EQ(scene.lights.size(), 1u);
   const Vec3 travel = scene.lights[0].direction;
   EXPECT_NEAR(length(travel), 1, 1e-6);
@@ -155,6 +168,51 @@ TEST(AutoView, TheSunShinesOnWhatTheCameraSees) {
   EXPECT_LT(travel.z, 0);
   EXPECT_LT(travel.y, 0);
   EXPECT_NEAR(auto_ao_distance(box), 0.08 * std::sqrt(12.0), 1e-5);
+}
+
+TEST(AutoView, TheCoreLeavesOutTheSea) {
+  // A hundred small triangles about the origin and one huge one.
+  Mesh mesh;
+  for (uint32_t i = 0; i < 100; ++i) {
+    const float x = static_cast<float>(i % 10) - 4.5f, z = static_cast<float>(i / 10) - 4.5f;
+    const auto first = static_cast<uint32_t>(mesh.positions.size());
+    mesh.positions.insert(mesh.positions.end(), {{x, 0, z}, {x + 1, 0, z}, {x, 1, z}});
+    mesh.triangles.push_back({first, first + 1, first + 2});
+  }
+  mesh.positions.insert(mesh.positions.end(), {{-9000, 0, -9000}, {9000, 0, -9000}, {0, 0, 9000}});
+  mesh.triangles.push_back({300, 301, 302});
+  EXPECT_LT(diagonal(core(mesh)), 20);
+  EXPECT_GT(diagonal(core(mesh)), 5);
+  for (const View& view : candidate_views(mesh, 1.5f, {})) {
+    EXPECT_EQ(camera_fault(view.camera), "");
+    EXPECT_GT(view.camera.near, 0);
+    EXPECT_GT(view.camera.far, 5) << "all that lies before it is in reach";
+  }
+}
+
+TEST(AutoView, TheUsualViewGivesWayOnlyToAMuchRicherOne) {
+  const std::vector<View> views = candidate_views(box_mesh({{-1, -1, -1}, {1, 1, 1}}), 1, {});
+  ASSERT_GT(views.size(), 3u);
+  const auto choice = [&](const std::vector<Richness>& richness) {
+    size_t next = 0;
+    const View& best = best_view(
+        views, [&](const Camera&) { return next < richness.size() ? richness[next++] : Richness{}; });
+    return &best - views.data();
+  };
+  const auto first_inside =
+      std::find_if(views.begin(), views.end(), [](const View& v) { return v.place == Place::inside; });
+  const auto inside = static_cast<size_t>(first_inside - views.begin());
+  ASSERT_TRUE(inside > 2 && inside + 1 < views.size());
+  EXPECT_EQ(choice({{10, 100}, {19, 50}, {20, 50}}), 0);
+  EXPECT_EQ(choice({{10, 100}, {19, 50}, {21, 500}, {21, 50}}), 2) << "the first of equals";
+  std::vector<Richness> rich(inside, Richness{10, 100});
+  rich.push_back({15, 50});
+  EXPECT_EQ(choice(rich), 0);
+  rich.push_back({16, 50});
+  EXPECT_EQ(choice(rich), static_cast<std::ptrdiff_t>(inside) + 1);
+  rich[0] = {900, 1000};
+  rich.back() = {4000, 6000};
+  EXPECT_EQ(choice(rich), 0) << "the hollow of a dense mesh";
 }
 
 }  // namespace

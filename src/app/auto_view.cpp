@@ -11,6 +11,7 @@
 namespace vitral {
 namespace {
 
+constexpr float kInsideFov = 65;
 constexpr float kFov = 40;                               // degrees
 constexpr Vec3 kThreeQuarterView{-0.55f, -0.4f, -0.8f};  // from the front, the right and above
 
@@ -67,92 +68,179 @@ struct Slab {
   double eye() const { return (least + most) / 2; }
 };
 
-// The nearest place from which all corners are inside the frame: for each of the two dimensions the
+// The nearest place from which all points are inside the frame: for each of the two dimensions the
 // depth at which the interval of eyes shrinks to one point, and of these the larger.
-Vec3d best_eye(const Box& box, const Basis& basis, double tan_x, double tan_y) {
+template <class ForEachPoint>
+Vec3d best_eye(const Box& box, const Basis& basis, double tan_x, double tan_y, ForEachPoint for_each_point) {
   const Vec3d target = middle(box);
   Slab horizontal, vertical;
-  double nearest = 0;
-  for (const Vec3d& corner : corners(box)) {
-    const Vec3d offset = corner - target;
+  double nearest = std::numeric_limits<double>::infinity();
+  for_each_point([&](const Vec3d& point) {
+    const Vec3d offset = point - target;
     const double depth = dot(offset, basis.forward);
     horizontal.add(dot(offset, basis.right), depth, tan_x);
     vertical.add(dot(offset, basis.up), depth, tan_y);
     nearest = std::min(nearest, depth);
-  }
+  });
   const double distance =
       std::max({horizontal.depth(tan_x), vertical.depth(tan_y), 0.02 * scale_of(box) - nearest});
   return target + basis.right * horizontal.eye() + basis.up * vertical.eye() - basis.forward * distance;
 }
 
-// Near and far enclose the box with some room. From inside it, near is a small part of its size.
-void enclose(const Box& box, Camera& camera, const ViewWishes& wishes) {
+template <class ForEachPoint>
+void stand_back(const Box& box, float aspect, Camera& camera, ForEachPoint for_each_point) {
+  const double tan_y = static_cast<double>(make_pinhole(camera, 1, 1).center_y * kFrameFill);
+  const double tan_x = tan_y * static_cast<double>(aspect);
+  camera.position = to_float(best_eye(box, make_basis(camera.view, camera.up), tan_x, tan_y, for_each_point));
+}
+
+// Near and far enclose the bounds with some room. From inside them, near is a small part of `scale`.
+void enclose(const Box& bounds, double scale, Camera& camera, const ViewWishes& wishes) {
   const Vec3d forward = unit(camera.view);
   double nearest = std::numeric_limits<double>::infinity(), furthest = 0;
-  for (const Vec3d& corner : corners(box)) {
+  for (const Vec3d& corner : corners(bounds)) {
     const double depth = dot(corner - to_double(camera.position), forward);
     nearest = std::min(nearest, depth);
     furthest = std::max(furthest, depth);
   }
   constexpr double kLeastNear = 5e-4;  // of the scale
-  const double near = std::max(nearest * 0.5, scale_of(box) * kLeastNear);
+  const double near = std::max(nearest * 0.5, scale * kLeastNear);
   camera.near = wishes.near.value_or(static_cast<float>(near));
-  camera.far = wishes.far.value_or(
-      static_cast<float>(std::max(furthest * 1.1, 2.0 * static_cast<double>(camera.near))));
+  const double far = std::max(furthest * 1.1, 2.0 * static_cast<double>(camera.near));
+  camera.far = wishes.far.value_or(static_cast<float>(far));
+  if (!(camera.near < camera.far)) throw UsageError("camera: near is not less than far");
 }
 
-}  // namespace
-
-Camera auto_camera(const Box& bounds, float aspect, const ViewWishes& wishes) {
+// The way it looks, up and the angle; the place is yet to be found.
+Camera aimed_camera(const Vec3& view, float fov, const ViewWishes& wishes) {
   Camera camera;
   camera.name = "auto";
-  camera.fov = wishes.fov.value_or(kFov);
-  camera.near = 1;  // until the place is known
+  camera.fov = wishes.fov.value_or(fov);
+  camera.near = 1;
   camera.far = 2;
-
-  // Where to look: as told; from a given eye, towards the middle; otherwise three-quarter.
-  const Vec3d target = middle(bounds);
-  camera.view = kThreeQuarterView;
-  if (wishes.view) {
-    camera.view = *wishes.view;
-  } else if (wishes.eye) {
-    const Vec3d way = target - to_double(*wishes.eye);
-    if (length(way) > 0) camera.view = to_float(normalize(way));
-  }
+  camera.view = view;
   camera.up = wishes.up.value_or(Vec3{0, 1, 0});
   if (!wishes.up && !camera_fault(camera).empty()) camera.up = {0, 0, -1};  // looks straight up or down
   const std::string fault = camera_fault(camera);
   if (!fault.empty()) throw UsageError("camera: " + fault);
+  return camera;
+}
+
+}  // namespace
+
+Camera auto_camera(const Mesh& mesh, float aspect, const ViewWishes& wishes) {
+  // Where to look: as told; from a given eye, towards the middle; otherwise three-quarter.
+  const Box box = bounds(mesh);
+  Vec3 view = kThreeQuarterView;
+  if (wishes.view) {
+    view = *wishes.view;
+  } else if (wishes.eye) {
+    const Vec3d way = middle(box) - to_double(*wishes.eye);
+    if (length(way) > 0) view = to_float(normalize(way));
+  }
+  Camera camera = aimed_camera(view, kFov, wishes);
 
   // Where to stand.
   if (wishes.eye) {
     camera.position = *wishes.eye;
   } else {
-    const Pinhole unit_frame = make_pinhole(camera, 1, 1);
-    const double tan_y = static_cast<double>(unit_frame.center_y * kFrameFill);
-    camera.position = to_float(
-        best_eye(bounds, make_basis(camera.view, camera.up), tan_y * static_cast<double>(aspect), tan_y));
+    stand_back(box, aspect, camera, [&](const auto& add) {
+      for (const Corners& triangle : mesh.triangles) {
+        for (const uint32_t corner : triangle) add(to_double(mesh.positions[corner]));
+      }
+    });
   }
-  enclose(bounds, camera, wishes);
-  if (!(camera.near < camera.far)) throw UsageError("camera: near is not less than far");
+  enclose(box, scale_of(box), camera, wishes);
   return camera;
 }
 
-void light_automatically(const Camera& camera, Scene& scene) {
-  // From above, to the left of the viewer and a little behind him.
-  const Basis basis = make_basis(camera.view, camera.up);
+Box core(const Mesh& mesh) {
+  // Some thousands of triangles, evenly taken, tell as much as all.
+  constexpr size_t kMostSamples = 4096;
+  const size_t step = mesh.triangles.size() / kMostSamples + 1;
+  std::array<std::vector<float>, 3> values;
+  for (size_t i = 0; i < mesh.triangles.size(); i += step) {
+    for (int axis = 0; axis < 3; ++axis) {
+      values[static_cast<size_t>(axis)].push_back(component(mesh.positions[mesh.triangles[i][0]], axis));
+    }
+  }
+  for (std::vector<float>& sorted : values) std::sort(sorted.begin(), sorted.end());
+  const size_t last = values[0].size() - 1, left_out = last / 20;
+  const auto at = [&](size_t i) { return Vec3{values[0][i], values[1][i], values[2][i]}; };
+  return {at(left_out), at(last - left_out)};
+}
+
+std::vector<View> candidate_views(const Mesh& mesh, float aspect, const ViewWishes& wishes) {
+  std::vector<View> views{{auto_camera(mesh, aspect, wishes), Place::outside}};
+  const Box whole = bounds(mesh), box = core(mesh);
+  const Vec3 middle_of_core = center(box), size = extent(box);
+  const double scale = scale_of(box);
+
+  // From around the core, as if there were nothing else.
+  for (const Vec3& sides : {Vec3{1, 1, 1}, Vec3{-1, 1, 1}, Vec3{1, 1, -1}, Vec3{-1, 1, -1}}) {
+    Camera camera = aimed_camera(kThreeQuarterView * sides, kFov, wishes);
+    stand_back(box, aspect, camera, [&](const auto& add) {
+      for (const Vec3d& corner : corners(box)) add(corner);
+    });
+    enclose(whole, scale, camera, wishes);
+    views.push_back({camera, Place::outside});
+  }
+
+  // What is flat has no inside.
+  if (!(size.x > 0 && size.y > 0 && size.z > 0)) return views;
+
+  // From the ends and corners of the core, at two heights, level and a little down, through its middle.
+  constexpr float kFromMiddle = 0.42f;  // of the size
+  for (const float height : {0.3f, 0.5f}) {
+    for (const Vec3& way : {Vec3{1, 0, 0}, Vec3{-1, 0, 0}, Vec3{0, 0, 1}, Vec3{0, 0, -1}, Vec3{1, 0, 1},
+                            Vec3{-1, 0, 1}, Vec3{1, 0, -1}, Vec3{-1, 0, -1}}) {
+      Camera camera =
+          aimed_camera(normalize(way * size + Vec3{0, -0.08f, 0} * length(way * size)), kInsideFov, wishes);
+      camera.position = middle_of_core - way * size * kFromMiddle;
+      camera.position.y = box.min.y + size.y * height;
+      enclose(whole, scale, camera, wishes);
+      views.push_back({camera, Place::inside});
+    }
+  }
+  return views;
+}
+
+const View& best_view(const std::vector<View>& views, const std::function<Richness(const Camera&)>& look) {
+  const auto triangles = [](const Richness& r) { return static_cast<double>(r.triangles); };
+  const auto density = [&](const Richness& r) {
+    return triangles(r) / static_cast<double>(std::max<size_t>(r.pixels, 1));
+  };
+  const View* best = &views.front();
+  const Richness usual = look(best->camera);
+  double most = 0;
+  for (size_t i = 1; i < views.size(); ++i) {
+    const Richness here = look(views[i].camera);
+    const bool is_better = views[i].place == Place::outside ? triangles(here) > 2 * triangles(usual)
+                                                            : triangles(here) > 1.5 * triangles(usual) &&
+                                                                  density(here) > 1.5 * density(usual);
+    if (!is_better || triangles(here) <= most) continue;
+    most = triangles(here);
+    best = &views[i];
+  }
+  return *best;
+}
+
+void light_automatically(const View& view, Scene& scene) {
+  // From above, to the left of the viewer and behind him. Little of it comes into a room.
+  const Basis basis = make_basis(view.camera.view, view.camera.up);
   Light sun;
-  sun.direction = to_float(normalize(basis.right * 0.5 - basis.up * 0.75 + basis.forward * 0.6));
+  sun.direction = to_float(normalize(basis.right * 0.7 - basis.up * 0.65 + basis.forward * 0.45));
   sun.color = {0.75f, 0.75f, 0.75f};
   scene.lights = {sun};
-  scene.ambient = {0.4f, 0.4f, 0.4f};
+  const float ambient = view.place == Place::inside ? 0.75f : 0.35f;
+  scene.ambient = {ambient, ambient, ambient};
   scene.background = {0.8f, 0.8f, 0.8f};
 }
 
-float auto_ao_distance(const Box& bounds) {
+float auto_ao_distance(const Box& core) {
   constexpr double kShare = 0.08;
-  const double diagonal = diagonal_of(bounds);
-  return static_cast<float>((diagonal > 0 ? diagonal : scale_of(bounds)) * kShare);
+  const double diagonal = diagonal_of(core);
+  return static_cast<float>((diagonal > 0 ? diagonal : scale_of(core)) * kShare);
 }
 
 }  // namespace vitral

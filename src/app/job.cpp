@@ -1,6 +1,7 @@
 #include "app/job.h"
 
 #include "app/auto_view.h"
+#include "app/richness.h"
 #include "io/mesh_file.h"
 #include "io/text.h"
 #include "render/kernel_choice.h"
@@ -98,6 +99,26 @@ void check_frame(const Job& job, const Options& options) {
   fail(job.input, reason);
 }
 
+// Camera and, for a bare mesh, light from the mesh itself. Where the user says neither where to stand
+// nor where to look, several views are tried.
+void find_view(Job& job, const Options& options) {
+  Scene& scene = job.project.scene;
+  Settings& settings = job.pipeline.settings;
+  const float aspect = static_cast<float>(settings.width) / static_cast<float>(settings.height);
+  const ViewWishes wishes{options.eye, options.view, options.up, options.fov, options.near, options.far};
+  View view;
+  if (options.eye || options.view) {
+    view.camera = auto_camera(scene.mesh, aspect, wishes);
+  } else {
+    Control control;
+    view = best_view(candidate_views(scene.mesh, aspect, wishes), triangle_counter(scene, settings, control));
+  }
+  job.camera = view.camera;
+  if (job.kind == InputKind::project) return;
+  light_automatically(view, scene);
+  if (!options.ao_distance) settings.ao_distance = auto_ao_distance(core(scene.mesh));
+}
+
 // The first directional light takes the direction; a project without one gets a white sun.
 void turn_sun(const Vec3& direction, Scene& scene) {
   const auto found = std::find_if(scene.lights.begin(), scene.lights.end(),
@@ -147,16 +168,7 @@ void load_job(Job& job, const Options& options) {
   const Box box = bounds(scene.mesh);
   if (is_empty(box)) fail(job.input, "there is no triangle in it");
 
-  if (job.automatic) {
-    Settings& settings = job.pipeline.settings;
-    const float aspect = static_cast<float>(settings.width) / static_cast<float>(settings.height);
-    job.camera = auto_camera(box, aspect,
-                             {options.eye, options.view, options.up, options.fov, options.near, options.far});
-    if (job.kind == InputKind::mesh) {
-      light_automatically(job.camera, scene);
-      if (!options.ao_distance) settings.ao_distance = auto_ao_distance(box);
-    }
-  }
+  if (job.automatic && options.command != Command::info) find_view(job, options);
   if (options.sun) turn_sun(*options.sun, scene);
   job.load_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
