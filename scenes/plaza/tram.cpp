@@ -78,7 +78,7 @@ void tram(Mesh& mesh, const Frame& f) {
   front(mesh, moved(turned(f, -90), {0, 0, kHalfLength}));
   box(mesh, Surface::bench, f, {-kHalfLength, kFloor - 0.1, -kHalfWidth + 0.06},
       {kHalfLength, kFloor, kHalfWidth - 0.06}, kTop | kBottom);
-  for (int i = 0; i < 6; ++i) {
+  for (int i = 0; i < (is_bare(mesh.detail) ? 0 : 6); ++i) {
     const double x = -3.2 + i * 1.2;
     for (const double z : {-0.68, 0.68}) {
       box(mesh, Surface::bench, f, {x, kFloor, z - 0.4}, {x + 0.42, kFloor + 0.45, z + 0.4}, kOnGround);
