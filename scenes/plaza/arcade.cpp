@@ -86,6 +86,8 @@ double arcade(Mesh& mesh, const Frame& f, int bays, double bay, Finish finish) {
   box(mesh, Surface::stone, f, {0, 0, -kGallery}, {width, 0.14, 0.0}, kFront | kLeft | kRight | kTop);
   quad(mesh, Surface::plaster_white, point(f, {0, kHeight, -kGallery}), point(f, {width, kHeight, -kGallery}),
        point(f, {width, kHeight, -kThick}), point(f, {0, kHeight, -kThick}));
+  room(mesh, Surface::plaster_white, Surface::stone, f, {0.02, 0.14, -kGallery},
+       {width - 0.02, kHeight, -kThick}, kLeft | kRight);
   const Frame inner = moved(f, {0, 0.14, -kGallery});
   const double high = kHeight - 0.14;
   for (int i = 0; i < bays; ++i) {

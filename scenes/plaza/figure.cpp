@@ -48,7 +48,8 @@ void arm(Mesh& mesh, const Frame& f, const Figure& figure, double side, double l
   const Vec3d wrist =
       elbow + normalize(Vec3d{side * std::sin(a) * std::cos(b), -std::cos(a) * std::cos(b), std::sin(b)}) *
                   (0.15 * h);
-  limb(mesh, figure.cloth, f, {shoulder, (shoulder + elbow) * 0.5, elbow, wrist},
+  const Vec3d inside = shoulder - Vec3d{side * 0.045 * h, 0.01 * h, 0};
+  limb(mesh, figure.cloth, f, {inside, (shoulder + elbow) * 0.5, elbow, wrist},
        {0.042 * h, 0.036 * h, 0.031 * h, 0.024 * h});
   ellipsoid(mesh, figure.skin, moved(f, wrist), {0.023 * h, 0.03 * h, 0.023 * h},
             divisions(mesh.detail, 7, 4));

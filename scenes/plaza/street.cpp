@@ -143,11 +143,12 @@ void kiosk(Mesh& mesh, const Frame& f) {
   const double turn = kPi / 8, flat = std::cos(kPi / 8);
   lathe(mesh, Surface::stone, f, {{1.75, 0}, {1.75, 0.14}, {1.3, 0.14}}, 8, Shading::faceted, turn);
   lathe(mesh, Surface::paint_green, f,
-        {{1.45, 0.13}, {1.45, 0.25}, {1.38, 0.3}, {1.38, 1.0}, {1.6, 1.06}, {1.6, 1.12}, {1.3, 1.12}}, 8,
+        {{1.45, 0.13}, {1.45, 0.25}, {1.38, 0.3}, {1.38, 1.0}, {1.6, 1.06}, {1.6, 1.12}, {0.3, 1.12}}, 8,
         Shading::faceted, turn);
   lathe(mesh, Surface::interior, f, {{0.35, 1.12}, {0.35, 2.35}, {0.3, 2.35}}, 8, Shading::faceted, turn);
   lathe(mesh, Surface::paint_green, f,
-        {{1.3, 2.35},
+        {{0.2, 2.35},
+         {1.3, 2.35},
          {1.42, 2.4},
          {1.42, 2.72},
          {1.62, 2.82},

@@ -101,7 +101,7 @@ void tram(Mesh& mesh, const Frame& f) {
         const Vec3d p = point(f, {x, y + rise * std::sin(a), half_width * std::cos(a)});
         const Vec3d q = point(f, {x, y + rise * std::sin(b), half_width * std::cos(b)}),
                     c = point(f, {x, y, 0});
-        x > 0 ? triangle(mesh, surface, c, p, q) : triangle(mesh, surface, c, q, p);
+        x > 0 ? triangle(mesh, surface, c, q, p) : triangle(mesh, surface, c, p, q);
       }
     }
   };
@@ -123,7 +123,7 @@ void tram(Mesh& mesh, const Frame& f) {
   for (const double x : {-1.45, 1.45}) {
     for (const double z : {-0.5, 0.5}) {
       lathe(mesh, Surface::iron, leaned(moved(f, {x, 0.38, z - 0.05}), 90),
-            {{0.36, -0.02}, {0.36, 0.1}, {0, 0.1}}, divisions(mesh.detail, 18, 8));
+            {{0, -0.02}, {0.36, -0.02}, {0.36, 0.1}, {0, 0.1}}, divisions(mesh.detail, 18, 8));
     }
   }
 }
