@@ -83,11 +83,11 @@ double arcade(Mesh& mesh, const Frame& f, int bays, double bay, Finish finish) {
   for (int i = 0; i < bays; ++i) arch(mesh, raised, i * bay, (i + 1) * bay, half_pier);
   box(mesh, Surface::ashlar, f, {0, 0.14 + kSpring, -kThick}, {width, 0.14 + kHeight, 0}, kLeft | kRight);
   // The gallery: step, paving, ceiling with cross beams, and doors in its back wall.
-  box(mesh, Surface::stone, f, {0, 0, -kGallery}, {width, 0.14, 0.0}, kFront | kLeft | kRight | kTop);
+  box(mesh, Surface::stone, f, {0, 0, -kGallery}, {width, 0.14, 0.32}, kFront | kLeft | kRight | kTop);
   quad(mesh, Surface::plaster_white, point(f, {0, kHeight, -kGallery}), point(f, {width, kHeight, -kGallery}),
        point(f, {width, kHeight, -kThick}), point(f, {0, kHeight, -kThick}));
   room(mesh, Surface::plaster_white, Surface::stone, f, {0.02, 0.14, -kGallery},
-       {width - 0.02, kHeight, -kThick}, kLeft | kRight);
+       {width - 0.02, kHeight, -0.02}, kLeft | kRight);
   const Frame inner = moved(f, {0, 0.14, -kGallery});
   const double high = kHeight - 0.14;
   for (int i = 0; i < bays; ++i) {

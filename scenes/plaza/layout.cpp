@@ -99,9 +99,9 @@ void houses(Mesh& mesh, const Plan& plan) {
 void greenery(Mesh& mesh, const Plan& plan) {
   begin_group(mesh, "trees");
   const double y = plan.curb;
+  uint32_t planted = 0;
   const auto plant = [&](double x, double z, Species species, double height) {
-    const uint32_t seed = hash(static_cast<uint32_t>(mesh.faces.size()), 17);
-    tree(mesh, Frame{{x, y, z}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, species, height, seed);
+    tree(mesh, Frame{{x, y, z}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, species, height, hash(planted++, 17));
   };
   // An avenue along the east and the north of the island, and a few on the west.
   for (int i = 0; i < 5; ++i) {

@@ -15,6 +15,11 @@ void side_wall(Mesh& mesh, const Frame& f) {
       {kHalfLength, kBelt + 0.09, kHalfWidth + 0.02});
   box(mesh, Surface::tram_cream, f, {-kHalfLength, kEave - 0.2, kHalfWidth - 0.06},
       {kHalfLength, kEave, kHalfWidth});
+  for (const double y : {0.82, 1.42}) {
+    box(mesh, Surface::tram_cream, f, {-kHalfLength, y, kHalfWidth - 0.03},
+        {kHalfLength, y + 0.035, kHalfWidth + 0.006}, kFront | kTop | kBottom);
+  }
+  box(mesh, Surface::tyre, f, {-2.1, 0.16, kHalfWidth - 0.24}, {2.1, 0.5, kHalfWidth - 0.14});
   const int windows = 7;
   const double width = 2 * kHalfLength / windows;
   for (int i = 0; i < windows; ++i) {
