@@ -14,6 +14,7 @@ constexpr double kHeight = 5.6, kGallery = 4.2, kThick = 0.62, kSpring = 3.55;
 void column(Mesh& mesh, const Frame& f) {
   const double r = 0.27;
   lathe(mesh, Surface::stone, f, {{0.56, 0.0}, {0.56, 0.26}, {0, 0.26}}, 4, Shading::faceted, kPi / 4);
+  if (is_bare(mesh.detail)) return bar(mesh, Surface::stone, f, {0, 0.26, 0}, {0, kSpring, 0}, 0.3, 6);
   std::vector<Vec2d> profile{{0.38, 0.26}, {0.41, 0.31}, {0.41, 0.36}, {0.34, 0.41},
                              {0.36, 0.45}, {0.36, 0.49}, {0.30, 0.53}};
   const double foot = 0.53, neck = kSpring - 0.42;
@@ -40,7 +41,7 @@ void column(Mesh& mesh, const Frame& f) {
 // The wall above two columns: front, back and the soffit of the arch; keystone and archivolt.
 void arch(Mesh& mesh, const Frame& f, double x0, double x1, double half_pier) {
   const double a = x0 + half_pier, b = x1 - half_pier, r = (b - a) / 2, middle = (a + b) / 2;
-  const int steps = 2 * divisions(mesh.detail, 6, 3);
+  const int steps = 2 * divisions(mesh.detail, 6, is_bare(mesh.detail) ? 2 : 3);
   const auto rim = [&](double radius, int i) {
     const double t = kPi * (1 - static_cast<double>(i) / steps);
     return Vec2d{middle + radius * std::cos(t), kSpring + radius * std::sin(t)};
@@ -56,7 +57,7 @@ void arch(Mesh& mesh, const Frame& f, double x0, double x1, double half_pier) {
   strip({x0, kSpring}, {a, kSpring});
   for (int i = 0; i < steps; ++i) strip(rim(r, i), rim(r, i + 1));
   strip({b, kSpring}, {x1, kSpring});
-  if (mesh.detail.level < 0.2) return;
+  if (is_coarse(mesh.detail)) return;
   // The archivolt: a band that stands out a little, its face, inner and outer edge.
   for (int i = 0; i < steps; ++i) {
     const double out = 0.06, width = 0.24;
@@ -82,9 +83,11 @@ double arcade(Mesh& mesh, const Frame& f, int bays, double bay, Finish finish) {
   for (int i = 0; i < bays; ++i) arch(mesh, raised, i * bay, (i + 1) * bay, half_pier);
   box(mesh, Surface::ashlar, f, {0, 0.14 + kSpring, -kThick}, {width, 0.14 + kHeight, 0}, kLeft | kRight);
   // The gallery: step, paving, ceiling with cross beams, and doors in its back wall.
-  box(mesh, Surface::stone, f, {0, 0, -kGallery}, {width, 0.14, 0.0}, kFront | kLeft | kRight | kTop);
+  box(mesh, Surface::stone, f, {0, 0, -kGallery}, {width, 0.14, 0.32}, kFront | kLeft | kRight | kTop);
   quad(mesh, Surface::plaster_white, point(f, {0, kHeight, -kGallery}), point(f, {width, kHeight, -kGallery}),
        point(f, {width, kHeight, -kThick}), point(f, {0, kHeight, -kThick}));
+  room(mesh, Surface::plaster_white, Surface::stone, f, {0.02, 0.14, -kGallery},
+       {width - 0.02, kHeight, -0.02}, kLeft | kRight);
   const Frame inner = moved(f, {0, 0.14, -kGallery});
   const double high = kHeight - 0.14;
   for (int i = 0; i < bays; ++i) {

@@ -20,6 +20,19 @@ void wall_around(Mesh& mesh, Surface wall, const Frame& f, double x0, double x1,
   }
 }
 
+// A bay with its window or door. From afar, in a coarse mesh, the window lies on the wall.
+void bay(Mesh& mesh, Surface wall, const Frame& f, double x0, double x1, double y0, double y1, const Hole& h,
+         const Joinery& joinery) {
+  if (is_bare(mesh.detail) || (is_coarse(mesh.detail) && joinery.finish == Finish::plain)) {
+    box(mesh, wall, f, {x0, y0, -0.3}, {x1, y1, 0}, kFront);
+    box(mesh, Surface::interior, f, {h.x0, h.y0, 0}, {h.x1, h.y1, 0.02}, kFront);
+    box(mesh, Surface::glass, f, {h.x0, h.y0, 0}, {h.x1, h.y1, 0.04}, kFront);
+    return;
+  }
+  wall_around(mesh, wall, f, x0, x1, y0, y1, h);
+  fill_hole(mesh, f, h, joinery);
+}
+
 std::vector<Storey> storeys_of(const Building& b) {
   using Balcony = Storey::Balcony;
   std::vector<Storey> storeys;
@@ -40,12 +53,16 @@ std::vector<Storey> storeys_of(const Building& b) {
 }
 
 void string_course(Mesh& mesh, const Frame& f, double width, double y) {
+  if (is_coarse(mesh.detail))
+    return box(mesh, Surface::stone, f, {0, y - 0.16, 0}, {width, y + 0.08, 0.12}, kOnWall);
   moulding(mesh, Surface::stone, f,
            {{0, y - 0.16}, {0.07, y - 0.16}, {0.10, y - 0.04}, {0.14, y}, {0.14, y + 0.06}, {0, y + 0.1}}, 0,
            width);
 }
 
 void cornice(Mesh& mesh, const Frame& f, double width, double y) {
+  if (is_bare(mesh.detail))
+    return box(mesh, Surface::stone, f, {0, y - 0.3, 0}, {width, y + 0.14, 0.5}, kOnWall);
   moulding(mesh, Surface::stone, f,
            {{0, y - 0.55},
             {0.06, y - 0.55},
@@ -88,16 +105,16 @@ double ground_floor(Mesh& mesh, const Frame& f, const Building& b) {
     const bool shop = b.ground == Ground::shops && i % 3 != 1;
     if (b.ground == Ground::cafe) {
       const Hole wide{x0 + 0.38, x1 - 0.38, i == 1 ? 0.16 : 0.42, 3.72};
-      wall_around(mesh, Surface::ashlar, f, x0, x1, plinth, height, wide);
-      fill_hole(mesh, f, wide, {Filling::cafe, Surface::paint_green, b.finish, id});
+      bay(mesh, Surface::ashlar, f, x0, x1, plinth, height, wide,
+          {Filling::cafe, Surface::paint_green, b.finish, id});
       surround(mesh, f, wide, Surround::plain);
       continue;
     }
     const double half = shop ? 1.05 : 0.8;
     const Hole hole{middle - half, middle + half, plinth + 0.14, 3.5};
-    wall_around(mesh, Surface::ashlar, f, x0, x1, plinth, height, hole);
     const Surface paint = b.joinery == Surface::paint_white ? Surface::paint_green : b.joinery;
-    fill_hole(mesh, f, hole, {shop ? Filling::shopfront : Filling::door, paint, b.finish, id});
+    bay(mesh, Surface::ashlar, f, x0, x1, plinth, height, hole,
+        {shop ? Filling::shopfront : Filling::door, paint, b.finish, id});
     surround(mesh, f, hole, Surround::plain);
     if (shop && b.finish == Finish::fine && unit(hash(id, 9)) < 0.6)
       shop_awning(mesh, f, x0 + 0.35, x1 - 0.35, 3.62);
@@ -123,9 +140,8 @@ double building(Mesh& mesh, const Frame& f, const Building& b) {
     for (int i = 0; i < b.bays; ++i) {
       const double x0 = i * b.bay, x1 = x0 + b.bay, middle = 0.5 * (x0 + x1);
       const Hole hole{middle - s.width / 2, middle + s.width / 2, y + s.sill + 0.12, y + s.head};
-      wall_around(mesh, b.wall, f, x0, x1, y, y + s.height, hole);
-      fill_hole(mesh, f, hole,
-                {s.filling, b.joinery, b.finish, hash(b.seed, level, static_cast<uint32_t>(i))});
+      bay(mesh, b.wall, f, x0, x1, y, y + s.height, hole,
+          {s.filling, b.joinery, b.finish, hash(b.seed, level, static_cast<uint32_t>(i))});
       surround(mesh, f, hole, b.finish == Finish::fine ? s.frame : Surround::plain);
       if (s.balcony == Storey::Balcony::iron) {
         iron_balcony(mesh, f, hole.x0 - 0.4, hole.x1 + 0.4, y + s.sill + 0.12, b.finish);
@@ -135,7 +151,7 @@ double building(Mesh& mesh, const Frame& f, const Building& b) {
     ++level;
   }
   cornice(mesh, f, width, y);
-  if (b.finish == Finish::fine) quoins(mesh, f, width, first + 0.12, y - 0.56);
+  if (b.finish == Finish::fine && !is_coarse(mesh.detail)) quoins(mesh, f, width, first + 0.12, y - 0.56);
   shell(mesh, b, f, width, y);
   const Frame top = moved(f, {0, y + 0.14, 0});
   if (b.crown == Crown::tiles) {

@@ -48,20 +48,21 @@ void arm(Mesh& mesh, const Frame& f, const Figure& figure, double side, double l
   const Vec3d wrist =
       elbow + normalize(Vec3d{side * std::sin(a) * std::cos(b), -std::cos(a) * std::cos(b), std::sin(b)}) *
                   (0.15 * h);
-  limb(mesh, figure.cloth, f, {shoulder, (shoulder + elbow) * 0.5, elbow, wrist},
+  const Vec3d inside = shoulder - Vec3d{side * 0.045 * h, 0.01 * h, 0};
+  limb(mesh, figure.cloth, f, {inside, (shoulder + elbow) * 0.5, elbow, wrist},
        {0.042 * h, 0.036 * h, 0.031 * h, 0.024 * h});
   ellipsoid(mesh, figure.skin, moved(f, wrist), {0.023 * h, 0.03 * h, 0.023 * h},
             divisions(mesh.detail, 7, 4));
 }
 
-void leg(Mesh& mesh, Surface cloth, const Frame& f, double h, double side, double swing) {
+void leg(Mesh& mesh, Surface cloth, Surface shoe, const Frame& f, double h, double side, double swing) {
   const double a = swing * kPi / 180;
   const Vec3d hip{side * 0.048 * h, 0.5 * h, 0};
   const Vec3d knee = hip + Vec3d{0, -std::cos(a), std::sin(a)} * (0.24 * h);
   const Vec3d foot{side * 0.05 * h, 0.03 * h, knee.z + std::sin(a * 0.6) * 0.2 * h};
   limb(mesh, cloth, f, {hip, knee, foot}, {0.062 * h, 0.046 * h, 0.034 * h});
-  ellipsoid(mesh, Surface::hair, moved(f, foot + Vec3d{0, -0.01 * h, 0.03 * h}),
-            {0.028 * h, 0.02 * h, 0.065 * h}, divisions(mesh.detail, 7, 4));
+  ellipsoid(mesh, shoe, moved(f, foot + Vec3d{0, -0.01 * h, 0.03 * h}), {0.028 * h, 0.02 * h, 0.065 * h},
+            divisions(mesh.detail, 7, 4));
 }
 
 }  // namespace
@@ -77,8 +78,8 @@ void figure(Mesh& mesh, const Frame& f, const Figure& figure) {
     body = {{0.44, 0.108, 0.088}, {0.5, 0.105, 0.085}};
     const bool statue = figure.skin == figure.cloth;
     const Surface cloth = statue ? figure.cloth : Surface::cloth_grey;
-    leg(mesh, cloth, f, h, 1, figure.stride);
-    leg(mesh, cloth, f, h, -1, -figure.stride);
+    leg(mesh, cloth, figure.hair, f, h, 1, figure.stride);
+    leg(mesh, cloth, figure.hair, f, h, -1, -figure.stride);
   }
   body.insert(body.end(), neck_up.begin(), neck_up.end());
   trunk(mesh, f, figure, body, figure.dress == Figure::Dress::robe ? 0.13 : 0.0);

@@ -28,7 +28,7 @@ void water(Mesh& mesh, const Frame& f, double radius, double y, double ripple) {
 void jet(Mesh& mesh, const Frame& f, const Vec3d& from, const Vec3d& to, double height, double radius) {
   std::vector<Vec3d> path;
   std::vector<double> radii;
-  const int steps = divisions(mesh.detail, 12, 5);
+  const int steps = divisions(mesh.detail, 12, 3);
   for (int i = 0; i <= steps; ++i) {
     const double t = static_cast<double>(i) / steps;
     path.push_back(point(f, from + (to - from) * t + Vec3d{0, 4 * height * t * (1 - t), 0}));
@@ -124,7 +124,7 @@ void fountain(Mesh& mesh, const Frame& f) {
   begin_group(mesh, "fountain");
   basin(mesh, f);
   bowls(mesh, f);
-  tritons(mesh, f);
+  if (!is_bare(mesh.detail)) tritons(mesh, f);
   Figure nymph;
   nymph.height = 1.55;
   nymph.cloth = nymph.skin = nymph.hair = Surface::bronze;
@@ -142,6 +142,7 @@ void fountain(Mesh& mesh, const Frame& f) {
     const Frame at = turned(f, 22.5 * i + 11.25);
     jet(mesh, at, {0, 2.8, 2.1}, {0, kLevel, 2.75}, 0.22, 0.020);
   }
+  if (is_bare(mesh.detail)) return;
   for (int i = 0; i < 16; ++i) {
     const Frame at = turned(f, 22.5 * i);
     lathe(mesh, Surface::brass, moved(at, {0, kLevel - 0.05, 4.55}), {{0.05, 0}, {0.035, 0.14}, {0, 0.14}},

@@ -28,6 +28,12 @@ Frame tilted(const Frame& f, double degrees) {
   return {f.origin, f.x * c + f.y * s, f.y * c - f.x * s, f.z};
 }
 
+bool is_bare(const Detail& detail) {
+  return detail.level < 0.08;
+}
+bool is_coarse(const Detail& detail) {
+  return detail.level < 0.2;
+}
 int many(const Detail& detail, double base, int least) {
   return std::max(least, static_cast<int>(std::lround(base * detail.level)));
 }

@@ -38,7 +38,9 @@ Frame tilted(const Frame& frame, double degrees);     // about z, from x toward 
 struct Detail {
   double level = 1;
 };
-int many(const Detail& detail, double base, int least = 1);       // things: base * level
+bool is_bare(const Detail& detail);                          // little is left but walls, trees and monuments
+bool is_coarse(const Detail& detail);                        // ornaments are left out, rooms are flat
+int many(const Detail& detail, double base, int least = 1);  // things: base * level
 int divisions(const Detail& detail, double base, int least = 3);  // of one length: base * sqrt(level)
 
 struct Face {

@@ -81,9 +81,9 @@ void cafe_bar(Mesh& mesh, const Frame& f, double width, double depth) {
 }  // namespace
 
 void cafe(Mesh& mesh, const Frame& f, double width, double height, double depth) {
-  room(mesh, Surface::interior, Surface::floorboards, f, {0.1, 0, -depth},
-       {width - 0.1, height, -kReveal}, kAllSides - kFront);
-  if (mesh.detail.level < 0.2) return;
+  room(mesh, Surface::interior, Surface::floorboards, f, {0.1, 0, -depth}, {width - 0.1, height, -kReveal},
+       kAllSides - kFront);
+  if (is_coarse(mesh.detail)) return;
   cafe_bar(mesh, f, width, depth);
   const int around = divisions(mesh.detail, 16, 6);
   const int tables = static_cast<int>(width / 1.7);

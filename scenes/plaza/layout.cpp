@@ -1,6 +1,7 @@
 // Where everything stands. North is +z, east is +x; the sun comes from the south-west.
 #include "layout.h"
 
+#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -98,9 +99,9 @@ void houses(Mesh& mesh, const Plan& plan) {
 void greenery(Mesh& mesh, const Plan& plan) {
   begin_group(mesh, "trees");
   const double y = plan.curb;
+  uint32_t planted = 0;
   const auto plant = [&](double x, double z, Species species, double height) {
-    const uint32_t seed = hash(static_cast<uint32_t>(mesh.faces.size()), 17);
-    tree(mesh, Frame{{x, y, z}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, species, height, seed);
+    tree(mesh, Frame{{x, y, z}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, species, height, hash(planted++, 17));
   };
   // An avenue along the east and the north of the island, and a few on the west.
   for (int i = 0; i < 5; ++i) {
@@ -116,16 +117,19 @@ void greenery(Mesh& mesh, const Plan& plan) {
 }
 
 void furniture(Mesh& mesh, const Plan& plan) {
+  const int lamps = is_bare(mesh.detail) ? 2 : 4;
   const auto at = [&](double x, double z, double degrees) {
     return turned(Frame{{x, plan.curb, z}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, degrees);
   };
   begin_group(mesh, "lamps");
-  for (int i = 0; i < 4; ++i) street_lamp(mesh, at(34.6, -12.9 + 9.2 * i, 90));
-  for (int i = 0; i < 4; ++i) street_lamp(mesh, at(21.9 - 9.2 * i, 20.6, 0));
+  for (int i = 0; i < lamps; ++i) street_lamp(mesh, at(34.6, -12.9 + 9.2 * i, 90));
+  for (int i = 0; i < lamps; ++i) street_lamp(mesh, at(21.9 - 9.2 * i, 20.6, 0));
   for (const double x : {4.5, 19.5}) street_lamp(mesh, at(x, -10.5, 0));
   for (const double x : {4.5, 19.5}) street_lamp(mesh, at(x, 10.5, 0));
   street_lamp(mesh, at(-9.5, -5, 90));
   street_lamp(mesh, at(-9.5, 5, 90));
+  kiosk(mesh, at(26.5, 5.0, 10));
+  if (is_bare(mesh.detail)) return;
   begin_group(mesh, "benches");
   for (int i = 0; i < 4; ++i) {
     bench(mesh, at(32.9, -12.9 + 9.2 * i, -90));
@@ -142,7 +146,6 @@ void furniture(Mesh& mesh, const Plan& plan) {
   begin_group(mesh, "cafe");
   for (uint32_t i = 0; i < 5; ++i)
     cafe_table(mesh, at(28.2 + 2.9 * (i % 2) + 0.5 * (i / 2), 9.5 + 2.9 * (i / 2), 31.0 * i), i);
-  kiosk(mesh, at(26.5, 5.0, 10));
   flower_stall(mesh, at(9.4, -17.6, 205));
 }
 
@@ -172,10 +175,13 @@ void life(Mesh& mesh, const Plan& plan) {
       {46.2, 6.0, 5},     {45.9, 17.5, 185},  {45.8, -2.5, 175}, {30.0, 31.2, 90},  {18.0, 31.6, -90},
       {17.2, 31.2, -88},  {5.0, 31.0, 90},    {-3.0, 31.5, 85},  {36.5, 30.8, -70}, {29.5, 8.0, 200},
       {24.0, 8.2, 130},   {31.5, -7.5, -20},  {12.3, -7.3, 180}, {18.8, -1.5, 260}, {0.5, -9.5, 15}};
-  for (const auto& p : places) person(p[0], p[1], p[2]);
+  int rank = 0;
+  for (const auto& p : places) {
+    if (!is_coarse(mesh.detail) || rank++ % 3 == 0) person(p[0], p[1], p[2]);
+  }
   // Pigeons: a body, a head, a tail.
   begin_group(mesh, "pigeons");
-  for (int i = 0; i < 40; ++i) {
+  for (int i = 0; i < std::min(many(mesh.detail, 40), 120); ++i) {
     const double x = 15.2 + between(random, -3.6, 3.6), z = -12.5 + between(random, -3.2, 3.2);
     const Frame bird =
         turned(Frame{{x, plan.curb, z}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, between(random, 0, 360));
@@ -202,9 +208,9 @@ void lay_out(Mesh& mesh) {
   fountain(mesh, at(plan.monument.x - 13, plan.curb, plan.monument.z + 13));
   greenery(mesh, plan);
   furniture(mesh, plan);
-  life(mesh, plan);
+  if (!is_bare(mesh.detail)) life(mesh, plan);
   tram(mesh, turned(at(23.2, 0, plan.south + plan.sidewalk + 3.7), 180));
-  tram(mesh, turned(at(27, 0, plan.north - plan.sidewalk - plan.road + 1.5), 0));
+  if (!is_bare(mesh.detail)) tram(mesh, turned(at(27, 0, plan.north - plan.sidewalk - plan.road + 1.5), 0));
 }
 
 }  // namespace plaza

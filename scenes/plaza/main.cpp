@@ -2,7 +2,9 @@
 //
 //   plaza FOLDER [--detail X]      X = 1: some 300,000 triangles; they grow about in proportion
 //
-// Views: `Fonte` stands at (7.42, 18.61, -38.62) and looks along (0.31, -0.36, 0.87).
+// Two views are composed: `Fonte`, from (7.42, 18.61, -38.62) along (0.31, -0.36, 0.87), over the whole
+// square; and `Vidro`, from (45.1, 2.5, 9.2) along (0.56, 0.05, 0.83), before the panes of a cafe. Both
+// have a vertical field of view of 60 degrees. The sun travels along (0.597, -0.390, 0.700).
 #include <charconv>
 #include <cmath>
 #include <cstdio>

@@ -78,6 +78,7 @@ void pedestal(Mesh& mesh, const Frame& f) {
     const Frame face = moved(turned(f, 45.0 * side), {0, 2.0, flat});
     if (side % 2 == 0) {
       box(mesh, Surface::brass, face, {-0.62, -0.34, -0.01}, {0.62, 0.34, 0.035}, kOnWall);
+      if (is_bare(mesh.detail)) continue;
       for (const double x : {-0.55, 0.55}) {
         for (const double y : {-0.27, 0.27}) {
           ellipsoid(mesh, Surface::bronze, moved(face, {x, y, 0.035}), {0.03, 0.03, 0.02},
@@ -183,9 +184,9 @@ void monument(Mesh& mesh, const Frame& f) {
   begin_group(mesh, "monument");
   steps(mesh, f);
   pedestal(mesh, f);
-  companions(mesh, f);
+  if (!is_bare(mesh.detail)) companions(mesh, f);
   poet(mesh, moved(f, {0, kShaftTop, 0}));
-  chains(mesh, f);
+  if (!is_bare(mesh.detail)) chains(mesh, f);
 }
 
 }  // namespace plaza

@@ -35,6 +35,7 @@ void slope(Mesh& mesh, const Frame& f, double x0, double x1, double out, double 
 void chimney(Mesh& mesh, const Frame& f, Surface wall, double height) {
   box(mesh, wall, f, {-0.45, -1.6, -0.35}, {0.45, height, 0.35}, kOnGround);
   box(mesh, Surface::stone, f, {-0.55, height, -0.45}, {0.55, height + 0.14, 0.45});
+  if (is_bare(mesh.detail)) return;
   for (const double x : {-0.2, 0.2}) {
     lathe(mesh, Surface::far_roof, moved(f, {x, height + 0.14, 0}),
           {{0.13, 0}, {0.11, 0.35}, {0.16, 0.38}, {0.16, 0.45}, {0, 0.5}}, divisions(mesh.detail, 8, 5));
@@ -113,6 +114,7 @@ void tiled_roof(Mesh& mesh, const Frame& f, const Roof& roof) {
   // Ridge tiles.
   bar(mesh, Surface::roof, f, {-0.15, rise + 0.2, -run}, {roof.width + 0.15, rise + 0.2, -run}, 0.14, 8);
 
+  if (is_bare(mesh.detail) && roof.finish == Finish::plain) return;
   const int bays = static_cast<int>(std::lround(roof.width / roof.bay));
   for (int i = 0; i < bays; ++i) {
     if (i % 2 == 1 && i + 1 < bays + bays % 2) {

@@ -40,8 +40,24 @@ void round_quad(Mesh& mesh, Surface surface, const Corner& a, const Corner& b, c
 
 }  // namespace
 
-void lathe(Mesh& mesh, Surface surface, const Frame& frame, const std::vector<Vec2d>& profile, int segments,
+namespace {
+
+// A coarse mesh keeps the ends of a long profile and every third point between.
+std::vector<Vec2d> thinned(const std::vector<Vec2d>& profile) {
+  if (profile.size() < 6) return profile;
+  std::vector<Vec2d> kept;
+  for (size_t i = 0; i < profile.size(); ++i) {
+    if (i % 3 == 0 || i + 1 == profile.size()) kept.push_back(profile[i]);
+  }
+  return kept;
+}
+
+}  // namespace
+
+void lathe(Mesh& mesh, Surface surface, const Frame& frame, const std::vector<Vec2d>& whole, int segments,
            Shading shading, double phase) {
+  const std::vector<Vec2d> profile =
+      is_coarse(mesh.detail) && shading == Shading::smooth ? thinned(whole) : whole;
   const size_t rings = profile.size();
   if (rings < 2) return;
   const auto at = [&](size_t i, double angle) {

@@ -139,7 +139,7 @@ void skyline(Mesh& mesh, const Plan& plan) {
   toward = turned(toward, 180);
   const auto on_hill = [&](double x, double z) { return moved(toward, {-x, hill_height(hill, x, z), -z}); };
   castle(mesh, turned(moved(on_hill(hill.center.x, hill.center.z - 8), {0, 3, 0}), 12));
-  const int count = many(mesh.detail, 190, 40);
+  const int count = many(mesh.detail, 190, is_bare(mesh.detail) ? 40 : 60);
   Random random{4711, 0};
   for (int i = 0; i < std::min(count, 600); ++i) {
     const double x = hill.center.x + between(random, -190, 190), z = hill.center.z - between(random, 34, 130);

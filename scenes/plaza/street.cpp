@@ -12,7 +12,7 @@ void street_lamp(Mesh& mesh, const Frame& f) {
   lathe(
       mesh, Surface::iron, f,
       {{0.34, 0}, {0.34, 0.2}, {0.3, 0.28}, {0.22, 0.34}, {0.2, 0.9}, {0.24, 0.96}, {0.2, 1.02}, {0.1, 1.1}},
-      8, Shading::faceted);
+      is_bare(mesh.detail) ? 4 : 8, Shading::faceted);
   lathe(mesh, Surface::iron, f,
         {{0.11, 1.05},
          {0.13, 1.2},
@@ -38,6 +38,7 @@ void street_lamp(Mesh& mesh, const Frame& f) {
     lathe(mesh, Surface::iron, at, {{0, 0.46}, {0.09, 0.455}, {0.06, 0.50}, {0.02, 0.54}, {0, 0.62}}, around);
   };
   globe({0, 4.46, 0});
+  if (is_bare(mesh.detail)) return;
   for (const double side : {-1.0, 1.0}) {
     // An arm that swings out, dips and rises to its globe.
     std::vector<Vec3d> path;
@@ -116,7 +117,7 @@ void flower_stall(Mesh& mesh, const Frame& f) {
   for (int tier = 0; tier < 3; ++tier) {
     const double y = 0.3 + 0.26 * tier, z = 0.55 - 0.42 * tier;
     box(mesh, Surface::bench, f, {-1.15, y - 0.3, z - 0.2}, {1.15, y, z + 0.2}, kOnGround);
-    for (int pot = 0; pot < 7; ++pot) {
+    for (int pot = 0; pot < (is_coarse(mesh.detail) ? 3 : 7); ++pot) {
       const uint32_t id = hash(static_cast<uint32_t>(tier), static_cast<uint32_t>(pot), 33);
       const Frame at = moved(f, {-0.99 + 0.33 * pot, y, z});
       lathe(mesh, Surface::steel, at, {{0.08, 0}, {0.12, 0.22}, {0.1, 0.22}, {0, 0.15}},
@@ -142,11 +143,12 @@ void kiosk(Mesh& mesh, const Frame& f) {
   const double turn = kPi / 8, flat = std::cos(kPi / 8);
   lathe(mesh, Surface::stone, f, {{1.75, 0}, {1.75, 0.14}, {1.3, 0.14}}, 8, Shading::faceted, turn);
   lathe(mesh, Surface::paint_green, f,
-        {{1.45, 0.13}, {1.45, 0.25}, {1.38, 0.3}, {1.38, 1.0}, {1.6, 1.06}, {1.6, 1.12}, {1.3, 1.12}}, 8,
+        {{1.45, 0.13}, {1.45, 0.25}, {1.38, 0.3}, {1.38, 1.0}, {1.6, 1.06}, {1.6, 1.12}, {0.3, 1.12}}, 8,
         Shading::faceted, turn);
   lathe(mesh, Surface::interior, f, {{0.35, 1.12}, {0.35, 2.35}, {0.3, 2.35}}, 8, Shading::faceted, turn);
   lathe(mesh, Surface::paint_green, f,
-        {{1.3, 2.35},
+        {{0.2, 2.35},
+         {1.3, 2.35},
          {1.42, 2.4},
          {1.42, 2.72},
          {1.62, 2.82},

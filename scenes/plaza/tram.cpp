@@ -15,6 +15,11 @@ void side_wall(Mesh& mesh, const Frame& f) {
       {kHalfLength, kBelt + 0.09, kHalfWidth + 0.02});
   box(mesh, Surface::tram_cream, f, {-kHalfLength, kEave - 0.2, kHalfWidth - 0.06},
       {kHalfLength, kEave, kHalfWidth});
+  for (const double y : {0.82, 1.42}) {
+    box(mesh, Surface::tram_cream, f, {-kHalfLength, y, kHalfWidth - 0.03},
+        {kHalfLength, y + 0.035, kHalfWidth + 0.006}, kFront | kTop | kBottom);
+  }
+  box(mesh, Surface::tyre, f, {-2.1, 0.16, kHalfWidth - 0.24}, {2.1, 0.5, kHalfWidth - 0.14});
   const int windows = 7;
   const double width = 2 * kHalfLength / windows;
   for (int i = 0; i < windows; ++i) {
@@ -78,7 +83,7 @@ void tram(Mesh& mesh, const Frame& f) {
   front(mesh, moved(turned(f, -90), {0, 0, kHalfLength}));
   box(mesh, Surface::bench, f, {-kHalfLength, kFloor - 0.1, -kHalfWidth + 0.06},
       {kHalfLength, kFloor, kHalfWidth - 0.06}, kTop | kBottom);
-  for (int i = 0; i < 6; ++i) {
+  for (int i = 0; i < (is_bare(mesh.detail) ? 0 : 6); ++i) {
     const double x = -3.2 + i * 1.2;
     for (const double z : {-0.68, 0.68}) {
       box(mesh, Surface::bench, f, {x, kFloor, z - 0.4}, {x + 0.42, kFloor + 0.45, z + 0.4}, kOnGround);
@@ -101,7 +106,7 @@ void tram(Mesh& mesh, const Frame& f) {
         const Vec3d p = point(f, {x, y + rise * std::sin(a), half_width * std::cos(a)});
         const Vec3d q = point(f, {x, y + rise * std::sin(b), half_width * std::cos(b)}),
                     c = point(f, {x, y, 0});
-        x > 0 ? triangle(mesh, surface, c, p, q) : triangle(mesh, surface, c, q, p);
+        x > 0 ? triangle(mesh, surface, c, q, p) : triangle(mesh, surface, c, p, q);
       }
     }
   };
@@ -123,7 +128,7 @@ void tram(Mesh& mesh, const Frame& f) {
   for (const double x : {-1.45, 1.45}) {
     for (const double z : {-0.5, 0.5}) {
       lathe(mesh, Surface::iron, leaned(moved(f, {x, 0.38, z - 0.05}), 90),
-            {{0.36, -0.02}, {0.36, 0.1}, {0, 0.1}}, divisions(mesh.detail, 18, 8));
+            {{0, -0.02}, {0.36, -0.02}, {0.36, 0.1}, {0, 0.1}}, divisions(mesh.detail, 18, 8));
     }
   }
 }

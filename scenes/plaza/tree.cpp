@@ -36,9 +36,9 @@ void branch(Mesh& mesh, const Vec3d& from, const Vec3d& to, double thick, double
 // Sprigs near the surface of a mass. Their shading normals point out of the crown, so that it is lit
 // as a whole and not card by card.
 void sprigs(Mesh& mesh, Surface surface, const Mass& mass, const Vec3d& heart, Random& random) {
-  const double level = std::clamp(mesh.detail.level, 0.05, 8.0);
+  const double level = std::clamp(mesh.detail.level, 0.1, 40.0);
   const double size = 0.95 * std::pow(level, -0.33);
-  const int count = many(mesh.detail, 52.0 * mass.radius * mass.radius / 1.3, 6);
+  const int count = many(mesh.detail, 52.0 * mass.radius * mass.radius / 1.3, 4);
   for (int i = 0; i < count; ++i) {
     const Vec3d out = random_direction(random);
     const Vec3d center = mass.center + out * (mass.radius * std::pow(uniform(random), 0.25));
@@ -80,19 +80,19 @@ void tree(Mesh& mesh, const Frame& f, Species species, double height, uint32_t s
        {thick * 1.7, thick * 1.2, thick, thick * 0.9}, divisions(mesh.detail, 10, 5));
 
   std::vector<Mass> masses;
-  const int limbs = 7;
+  const int limbs = is_bare(mesh.detail) ? 5 : 7;
   for (int i = 0; i < limbs; ++i) {
     const double a = 2 * kPi * (i + between(random, -0.25, 0.25)) / limbs;
     const bool leader = i == 0;
     const double reach = leader ? 0.2 * spread : spread * between(random, 0.65, 0.9);
     const double top = leader ? height * 0.84 : height * between(random, 0.54, 0.76);
     const Vec3d tip = foot + Vec3d{reach * std::cos(a), top, reach * std::sin(a)};
-    branch(mesh, crotch, tip, thick * 0.6, 0.035, random);
+    if (!is_bare(mesh.detail)) branch(mesh, crotch, tip, thick * 0.6, 0.035, random);
     masses.push_back({tip, spread * (leader ? 0.55 : between(random, 0.42, 0.56))});
     for (int k = 0; k < 2; ++k) {
       const Vec3d from = crotch + (tip - crotch) * between(random, 0.5, 0.75);
       const Vec3d twig = from + normalize(random_direction(random) + Vec3d{0, 0.7, 0}) * (0.16 * height);
-      branch(mesh, from, twig, 0.05, 0.02, random);
+      if (!is_coarse(mesh.detail)) branch(mesh, from, twig, 0.05, 0.02, random);
       masses.push_back({twig, spread * between(random, 0.26, 0.38)});
     }
   }

@@ -7,6 +7,7 @@
 namespace plaza {
 
 void surround(Mesh& mesh, const Frame& f, const Hole& h, Surround kind) {
+  if (is_coarse(mesh.detail)) return;
   const double jamb = 0.17, out = 0.06, lintel = 0.24;
   const bool to_floor = kind == Surround::plain && h.y0 < 0.02;
   const double low = h.y0;
@@ -17,7 +18,7 @@ void surround(Mesh& mesh, const Frame& f, const Hole& h, Surround kind) {
     box(mesh, Surface::stone, f, {h.x0 - jamb - 0.06, low - 0.12, 0}, {h.x1 + jamb + 0.06, low, 0.15},
         kOnWall);
   }
-  if (kind == Surround::crowned && mesh.detail.level > 0.2) {
+  if (kind == Surround::crowned) {
     const double y = h.y1 + lintel;
     moulding(
         mesh, Surface::stone, f,
@@ -40,6 +41,10 @@ void railing(Mesh& mesh, const Frame& f, double x0, double x1, double spacing, d
 
 void iron_balcony(Mesh& mesh, const Frame& f, double x0, double x1, double y, Finish finish) {
   const double out = 0.62, thick = 0.14;
+  if (is_coarse(mesh.detail)) {
+    if (finish == Finish::fine) box(mesh, Surface::stone, f, {x0, y - thick, 0}, {x1, y, out}, kOnWall);
+    return;
+  }
   moulding(mesh, Surface::stone, f,
            {{0, y - thick - 0.08},
             {0.38, y - thick - 0.08},
@@ -48,7 +53,7 @@ void iron_balcony(Mesh& mesh, const Frame& f, double x0, double x1, double y, Fi
             {out, y},
             {0, y}},
            x0, x1);
-  if (finish == Finish::plain || mesh.detail.level < 0.2) return;
+  if (finish == Finish::plain) return;
   // Two consoles: scrolls seen from the side.
   for (const double x : {x0 + 0.15, x1 - 0.33}) {
     const Frame side{point(f, {x, y - thick - 0.08, 0}), f.z, f.y, f.x * -1};
@@ -73,7 +78,7 @@ void balustrade(Mesh& mesh, const Frame& f, double x0, double x1) {
     const double x = std::clamp(x0 + p * span, x0 + 0.22, x1 - 0.22);
     box(mesh, Surface::stone, f, {x - 0.22, 0, -0.22}, {x + 0.22, height + 0.06, 0.22}, kOnGround);
   }
-  if (mesh.detail.level < 0.2) return;
+  if (is_coarse(mesh.detail)) return;
   const std::vector<Vec2d> profile{{0.085, 0.16}, {0.085, 0.21}, {0.045, 0.26}, {0.10, 0.40},
                                    {0.055, 0.60}, {0.04, 0.72},  {0.085, 0.78}, {0.085, 0.84}};
   const int sides = divisions(mesh.detail, 6, 4);
@@ -95,6 +100,7 @@ void shop_awning(Mesh& mesh, const Frame& f, double x0, double x1, double y) {
           {at(x0, out, y - drop), at(x1, out, y - drop), at(x1, 0.03, y), at(x0, 0.03, y)},
           {Vec2d{0, 0}, {u, 0}, {u, 1}, {0, 1}}, up);
   // The valance: scallops of cloth.
+  if (is_coarse(mesh.detail)) return;
   const int scallops = std::max(2, static_cast<int>((x1 - x0) / 0.4));
   for (int i = 0; i < scallops; ++i) {
     const double a = x0 + (x1 - x0) * i / scallops, b = x0 + (x1 - x0) * (i + 1) / scallops;

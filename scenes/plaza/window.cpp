@@ -58,6 +58,7 @@ void door_leaves(Mesh& mesh, const Frame& f, const Hole& h, double z) {
                                      point(f, {h.x1, h.y1, z}), point(f, {h.x0, h.y1, z})};
   quad_uv(mesh, Surface::door, corners, {Vec2d{0, 0}, {1, 0}, {1, 1}, {0, 1}}, f.z);
   const double middle = 0.5 * (h.x0 + h.x1);
+  if (is_coarse(mesh.detail)) return;
   ellipsoid(mesh, Surface::brass, moved(f, {middle + 0.09, h.y0 + 1.05, z + 0.05}), {0.035, 0.035, 0.04},
             divisions(mesh.detail, 8, 4));
 }
@@ -65,13 +66,14 @@ void door_leaves(Mesh& mesh, const Frame& f, const Hole& h, double z) {
 }  // namespace
 
 void fill_hole(Mesh& mesh, const Frame& f, const Hole& h, const Joinery& j) {
-  const bool fine = j.finish == Finish::fine && mesh.detail.level > 0.2;
+  const bool fine = j.finish == Finish::fine && !is_coarse(mesh.detail);
   const double z = -kReveal;
   if (j.filling == Filling::door) {
     // Two leaves under a fanlight.
     const double transom = h.y1 - std::min(0.75, 0.25 * (h.y1 - h.y0));
     room(mesh, Surface::stone, Surface::stone, f, {h.x0, h.y0, z}, {h.x1, h.y1, 0},
          kLeft | kRight | kTop | kBottom);
+    if (is_coarse(mesh.detail)) return door_leaves(mesh, f, h, z);
     room(mesh, Surface::interior, Surface::interior, f, {h.x0, transom, -1.2}, {h.x1, h.y1, z},
          kAllSides - kFront);
     door_leaves(mesh, f, {h.x0, h.x1, h.y0, transom}, z);
@@ -80,13 +82,15 @@ void fill_hole(Mesh& mesh, const Frame& f, const Hole& h, const Joinery& j) {
   }
   room(mesh, Surface::stone, Surface::stone, f, {h.x0, h.y0, z}, {h.x1, h.y1, 0},
        kLeft | kRight | kTop | kBottom);
-  if (j.filling != Filling::cafe) {
+  if (is_coarse(mesh.detail)) {
+    box(mesh, Surface::interior, f, {h.x0, h.y0, z - 0.2}, {h.x1, h.y1, z - 0.1}, kFront);
+  } else if (j.filling != Filling::cafe) {
     room(mesh, Surface::interior, Surface::floorboards, f, {h.x0, h.y0, -kRoom}, {h.x1, h.y1, z},
          kAllSides - kFront);
   }
   if (!fine) {
     pane(mesh, f, h.x0, h.x1, h.y0, h.y1, z, j.seed);
-    if (j.finish == Finish::fine) return;
+    if (is_coarse(mesh.detail)) return;
     box(mesh, j.paint, f, {0.5 * (h.x0 + h.x1) - 0.06, h.y0, z}, {0.5 * (h.x0 + h.x1) + 0.06, h.y1, z + 0.03},
         kFront | kLeft | kRight);
     return;
