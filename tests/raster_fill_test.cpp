@@ -40,6 +40,17 @@ double plane_inverse_depth(const Mesh& mesh, uint32_t triangle, const Pinhole& c
          dot(n, a);
 }
 
+// Another order of the triangles within every bin.
+void shuffle_bins(Random& random, RasterFrame& frame) {
+  for (size_t bin = 0; bin + 1 < frame.bins.first_reference.size(); ++bin) {
+    const uint64_t first = frame.bins.first_reference[bin], end = frame.bins.first_reference[bin + 1];
+    for (uint64_t i = first; i < end; ++i) {
+      const uint64_t other = first + random.below(static_cast<uint32_t>(end - first));
+      std::swap(frame.bins.references[i], frame.bins.references[other]);
+    }
+  }
+}
+
 TEST(RasterFill, TheNearestTriangleWins) {
   constexpr int size = 100;
   Random random(31);
@@ -118,14 +129,38 @@ TEST(RasterFill, EqualDepthGoesToTheLowerNumberInAnyOrder) {
   }
   EXPECT_GT(covered, 3000u);
   for (int shuffle = 0; shuffle < 8; ++shuffle) {
-    for (size_t bin = 0; bin + 1 < frame.bins.first_reference.size(); ++bin) {
-      const uint64_t first = frame.bins.first_reference[bin], end = frame.bins.first_reference[bin + 1];
-      for (uint64_t i = first; i < end; ++i) {
-        const uint64_t other = first + random.below(static_cast<uint32_t>(end - first));
-        std::swap(frame.bins.references[i], frame.bins.references[other]);
-      }
-    }
+    shuffle_bins(random, frame);
     ASSERT_TRUE(fill_frame(kernels, camera, size, size, frame) == expected) << shuffle;
+  }
+}
+
+// Many walls across the whole picture, close behind each other and some in the same place: skipping
+// what is hidden must neither lose the nearest nor the lower number.
+TEST(RasterFill, CloseLayersInAnyOrder) {
+  constexpr int size = 64, layers = 300;
+  Random random(38);
+  for (int round = 0; round < 4; ++round) {
+    const float slope = round % 2 == 0 ? 0.0f : 0.01f;
+    std::vector<int> depth(layers);
+    for (int i = 0; i < layers; ++i) depth[static_cast<size_t>(i)] = i / 3;
+    for (size_t i = depth.size() - 1; i > 0; --i)
+      std::swap(depth[i], depth[random.below(static_cast<uint32_t>(i + 1))]);
+    Mesh mesh;
+    for (const int d : depth) {
+      const float w = 10 * (1 + static_cast<float>(d) * 1e-5f);
+      add_triangle(mesh, at_pixel(-9, -9, w), at_pixel(200, -9, w * (1 + slope)), at_pixel(-9, 200, w));
+    }
+    const uint32_t expected = static_cast<uint32_t>(std::find(depth.begin(), depth.end(), 0) - depth.begin());
+    const Pinhole camera = pixel_camera();
+    RasterFrame frame;
+    setup_frame(camera, size, size, {}, mesh, in_order, frame);
+    for (int shuffle = 0; shuffle < 6; ++shuffle) {
+      for (const Kernels* kernels : available_kernels()) {
+        for (const uint32_t t : fill_frame(*kernels, camera, size, size, frame).triangle)
+          ASSERT_EQ(t, expected);
+      }
+      shuffle_bins(random, frame);
+    }
   }
 }
 

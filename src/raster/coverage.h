@@ -51,6 +51,13 @@ static inline PixelBox centers_within(const int32_t x[3], const int32_t y[3]) {
           ((x1 - half) >> kSubpixelBits) + 1, ((y1 - half) >> kSubpixelBits) + 1};
 }
 
+// Whether the triangle covers the pixel (x, y); its area must be positive.
+static inline bool covers(const int32_t px[3], const int32_t py[3], int x, int y) {
+  return make_edge(px[0], py[0], px[1], py[1], x, y).value >= 0 &&
+         make_edge(px[1], py[1], px[2], py[2], x, y).value >= 0 &&
+         make_edge(px[2], py[2], px[0], py[0], x, y).value >= 0;
+}
+
 static inline PixelBox intersection(const PixelBox& a, const PixelBox& b) {
   return {a.x0 > b.x0 ? a.x0 : b.x0, a.y0 > b.y0 ? a.y0 : b.y0, a.x1 < b.x1 ? a.x1 : b.x1,
           a.y1 < b.y1 ? a.y1 : b.y1};

@@ -85,6 +85,9 @@ void emit(const Projection& projection, const BinGrid& grid, const Mesh& mesh, u
       t.x[1] = t.x[2], t.y[1] = t.y[2];
       t.x[2] = x, t.y[2] = y;
     }
+    // Of the triangles smaller than a pixel many fall between the centres.
+    const bool one_pixel = box.x1 - box.x0 == 1 && box.y1 - box.y0 == 1;
+    if (one_pixel && !covers(t.x, t.y, box.x0, box.y0)) continue;
     if (!has_plane) {
       ClipVertex corner[3];
       const Corners& c = mesh.triangles[number];
