@@ -35,6 +35,11 @@ const Camera kFromAbove = camera_at({0, 4, 0}, {0, -1, 0}, 60, {0, 0, -1});
 
 const Vec3& aov(const Frame& frame, size_t which, int x, int y) { return frame.aovs[which].pixels.row(y)[x]; }
 
+// The pixels of the first auxiliary picture, from above.
+std::vector<Vec3> first_aov(const Scene& scene, const Settings& settings) {
+  return render_scene(scene, kFromAbove, settings).aovs.at(0).pixels.pixels;
+}
+
 TEST(Light, LambertsCosine) {
   Scene scene;
   add_floor(scene, add_material(scene, matte({0.5f, 0.25f, 1})), 10);
@@ -236,13 +241,13 @@ TEST(Ambient, EndsAtItsDistanceAndPassesGlass) {
   s.effects = only(&Effects::ambient_occlusion);
   s.aovs = {"ao"};
   s.ao_distance = 4.9f;
-  for (const Vec3& v : render_scene(scene, kFromAbove, s).aovs[0].pixels.pixels) ASSERT_EQ(v.x, 1);
+  for (const Vec3& v : first_aov(scene, s)) ASSERT_EQ(v.x, 1);
   s.ao_distance = 1000;
   double mean = 0;  // what shows between floor and ceiling at the horizon: (5/100)^2
-  for (const Vec3& v : render_scene(scene, kFromAbove, s).aovs[0].pixels.pixels) mean += static_cast<double>(v.x) / 4096;
+  for (const Vec3& v : first_aov(scene, s)) mean += static_cast<double>(v.x) / 4096;
   EXPECT_NEAR(mean, 0.0025, 0.0015);
   scene.materials[1].optics = Optics::solid;
-  for (const Vec3& v : render_scene(scene, kFromAbove, s).aovs[0].pixels.pixels) ASSERT_EQ(v.x, 1);
+  for (const Vec3& v : first_aov(scene, s)) ASSERT_EQ(v.x, 1);
 }
 
 // A mirror floor under a uniformly bright ceiling: Ks times what the ceiling sends.
