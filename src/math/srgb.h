@@ -39,14 +39,25 @@ inline constexpr std::array<float, 255> kSrgbThresholds = [] {
   return table;
 }();
 
+// The code at i / 4096. Thresholds lie more than 1/3300 apart, so that a value's code is that of the
+// grid point below it or the next.
+inline constexpr std::array<uint8_t, 4096> kSrgbOfGrid = [] {
+  std::array<uint8_t, 4096> table{};
+  size_t code = 0;
+  for (size_t i = 0; i < 4096; ++i) {
+    while (code < 255 && kSrgbThresholds[code] <= static_cast<float>(i) / 4096) ++code;
+    table[i] = static_cast<uint8_t>(code);
+  }
+  return table;
+}();
+
 // The code of a linear value: the number of thresholds at or below it. Values outside [0, 1] and NaN
 // are clamped (NaN to 0).
 static inline uint8_t linear_to_srgb8(float x) {
-  size_t low = 0;
-  for (size_t step = 128; step != 0; step /= 2) {
-    if (low + step <= 255 && x >= kSrgbThresholds[low + step - 1]) low += step;
-  }
-  return static_cast<uint8_t>(low);
+  if (!(x > 0)) return 0;
+  if (x >= 1) return 255;
+  const uint8_t code = kSrgbOfGrid[static_cast<size_t>(x * 4096)];
+  return code < 255 && x >= kSrgbThresholds[code] ? static_cast<uint8_t>(code + 1) : code;
 }
 
 }  // namespace vitral

@@ -38,6 +38,7 @@ struct Worker {
 // The auxiliary pictures that were asked for; null where not.
 struct AovTargets {
   std::array<Aov*, std::size(kAovNames)> by_index{};
+  bool any = false;
 };
 
 void check_settings(const Settings& s) {
@@ -75,6 +76,7 @@ Rectangle crop_of(const Settings& s) { return s.crop.width == 0 ? Rectangle{0, 0
 
 // The lanes of the block at (x, y) that lie in the crop.
 uint64_t lanes_inside(const Rectangle& crop, int x, int y) {
+  if (x >= crop.x && y >= crop.y && x + kBlockSide <= crop.x + crop.width && y + kBlockSide <= crop.y + crop.height) return ~0ull;
   uint64_t lanes = 0;
   for (int lane = 0; lane < kPacketSize; ++lane) {
     const int px = x + lane % kBlockSide, py = y + lane / kBlockSide;
@@ -103,8 +105,12 @@ void write_aovs(const AovTargets& targets, const SurfacePacket& s, const LightDe
 void render_tile(const FrameContext& frame, const Rectangle& crop, int tile_x, int tile_y, Worker& worker, Frame& out,
                  const AovTargets& targets) {
   worker.color.assign(kTilePixels, frame.scene.background);
-  worker.reflection.assign(kTilePixels, Vec3{0, 0, 0});
-  worker.refraction.assign(kTilePixels, Vec3{0, 0, 0});
+  PathSums sums{worker.color.data(), nullptr, nullptr};
+  if (targets.any) {
+    worker.reflection.assign(kTilePixels, Vec3{0, 0, 0});
+    worker.refraction.assign(kTilePixels, Vec3{0, 0, 0});
+    sums = {worker.color.data(), worker.reflection.data(), worker.refraction.data()};
+  }
   worker.paths.current.clear();
   rasterize_tile(frame, tile_x, tile_y, worker.tally, worker.visibility);
   const auto frame_pixel = [&](int x, int y) {
@@ -123,6 +129,7 @@ void render_tile(const FrameContext& frame, const Rectangle& crop, int tile_x, i
       const PassTimer timer(worker.tally, Pass::shade);
       make_surfaces(frame.scene, rays, hits, lanes, surfaces);
     }
+    if (surfaces.points.live == 0) continue;
     Path camera_paths[kPacketSize];
     for (int lane = 0; lane < kPacketSize; ++lane) {
       const int px = x + lane % kBlockSide, py = y + lane / kBlockSide;
@@ -139,11 +146,11 @@ void render_tile(const FrameContext& frame, const Rectangle& crop, int tile_x, i
       if (!(surfaces.points.live >> lane & 1)) continue;
       ++worker.covered;
       worker.color[camera_paths[lane].pixel] = light.color[lane];
-      write_aovs(targets, surfaces, detail, lane, frame_pixel(x + lane % kBlockSide, y + lane / kBlockSide));
+      if (targets.any) write_aovs(targets, surfaces, detail, lane, frame_pixel(x + lane % kBlockSide, y + lane / kBlockSide));
     }
     spawn_paths(frame, surfaces, camera_paths, worker.paths.current);
   }
-  trace_paths(frame, worker.paths, worker.tally, {worker.color.data(), worker.reflection.data(), worker.refraction.data()});
+  trace_paths(frame, worker.paths, worker.tally, sums);
 
   const PassTimer timer(worker.tally, Pass::resolve);
   for (int y = std::max(tile_y, crop.y); y < std::min(tile_y + kTileSide, crop.y + crop.height); ++y) {
@@ -205,6 +212,7 @@ Frame render_frame(const Scene& scene, const Accelerator& accelerator, const Cam
     const bool scalar = index == 3 || (index >= 5 && index <= 8);
     out.aovs.push_back({name, scalar ? 1 : 3, Image<Vec3>(crop.width, crop.height, Vec3{0, 0, 0})});
     targets.by_index[index] = &out.aovs.back();
+    targets.any = true;
   }
 
   PassTally setup_tally;
