@@ -1,0 +1,141 @@
+// The assets of a project: scenes, viewports, cameras, lights, material libraries.
+#include "io/project_reading.h"
+#include "io/text.h"
+
+#include <algorithm>
+#include <filesystem>
+
+namespace vitral {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A path of the project as it can be opened. What is missing is said here, where the line is known.
+std::string path_of(const Reading& reading, const XmlElement& element) {
+  return (reading.folder / name_of(reading.source, element)).lexically_normal().string();
+}
+
+bool exists(const std::string& path) {
+  std::error_code code;
+  return fs::exists(path, code);
+}
+
+void read_scene(Reading& reading, const XmlElement& element) {
+  warn_unknown_attributes(reading.source, element, {"name", "type"});
+  reading.scenes.push_back(attribute_or(element, "name", ""));
+  each(reading, element, "file", [&](const XmlElement& file) {
+    const std::string path = path_of(reading, file);
+    if (!exists(path)) fail(reading.source, file, path + ": no such file");
+    reading.project.meshes.push_back({path, file.line});
+  });
+}
+
+void read_viewport(Reading& reading, const XmlElement& element) {
+  warn_unknown_attributes(reading.source, element, {"name"});
+  reading.viewports.push_back(attribute_or(element, "name", ""));
+  for (const XmlElement& child : element.children) {
+    if (same_name(child.name, "bgcolor")) {
+      reading.project.scene.background = color_of(reading.source, child, kRadiances);
+    } else {
+      warn_unknown_child(reading.source, element, child);
+    }
+  }
+}
+
+void read_camera(Reading& reading, const XmlElement& element) {
+  const Source& source = reading.source;
+  warn_unknown_attributes(source, element, {"name", "type"});
+  Camera camera;
+  camera.name = attribute_or(element, "name", "");
+  if (camera.name.empty()) fail(source, element, "this camera has no name");
+  if (has_camera(reading.project, camera.name)) {
+    fail(source, element, "there is another camera " + named(camera.name));
+  }
+  for (const XmlElement& child : element.children) {
+    if (same_name(child.name, "perspective") || same_name(child.name, "projection")) {
+      warn_unknown_attributes(source, child, {"type", "fov", "near", "far"});
+      camera.fov = number_attribute(source, child, "fov", kFovDegrees, camera.fov);
+      camera.near = number_attribute(source, child, "near", kDistances, camera.near);
+      camera.far = number_attribute(source, child, "far", kDistances, camera.far);
+    } else if (same_name(child.name, "position")) {
+      camera.position = vector_of(source, child, kCoordinates);
+    } else if (same_name(child.name, "view")) {
+      camera.view = vector_of(source, child, kCoordinates);
+    } else if (same_name(child.name, "up")) {
+      camera.up = vector_of(source, child, kCoordinates);
+    } else if (!same_name(child.name, "viewport")) {
+      warn_unknown_child(source, element, child);
+    }
+  }
+  const std::string fault = camera_fault(camera);
+  if (!fault.empty()) fail(source, element, "camera " + named(camera.name) + ": " + fault);
+  reading.project.scene.cameras.push_back(camera);
+}
+
+// Directional or point, as its type says or, without a type, as what it has: direction or position.
+Light::Kind kind_of(const Source& source, const XmlElement& element, bool has_direction, bool has_position) {
+  const std::string type = attribute_or(element, "type", has_direction ? "directional" : "point");
+  const bool directional = same_name(type, "directional");
+  if (!directional && !same_name(type, "point")) {
+    fail(source, element, "type=\"" + printable(type) + "\" is neither directional nor point");
+  }
+  if (directional && !has_direction) fail(source, element, "this light has no direction");
+  if (!directional && !has_position) fail(source, element, "this light has neither direction nor position");
+  return directional ? Light::Kind::directional : Light::Kind::point;
+}
+
+void read_light(Reading& reading, const XmlElement& element) {
+  const Source& source = reading.source;
+  warn_unknown_attributes(source, element, {"name", "type"});
+  reading.lights.push_back(attribute_or(element, "name", ""));
+  Light light;
+  bool has_direction = false, has_position = false;
+  for (const XmlElement& child : element.children) {
+    if (same_name(child.name, "direction")) {
+      const Vec3 direction = vector_of(source, child, kCoordinates);
+      if (!(length(direction) > 0)) fail(source, child, "the direction is zero");
+      light.direction = normalize(direction);
+      has_direction = true;
+    } else if (same_name(child.name, "position")) {
+      light.position = vector_of(source, child, kCoordinates);
+      has_position = true;
+    } else if (same_name(child.name, "color")) {
+      light.color = color_of(source, child, kRadiances);
+    } else if (same_name(child.name, "ambient")) {
+      if (!reading.has_ambient) reading.project.scene.ambient = {0, 0, 0};
+      reading.has_ambient = true;
+      reading.project.scene.ambient += color_of(source, child, kRadiances);
+    } else {
+      warn_unknown_child(source, element, child);
+    }
+  }
+  light.kind = kind_of(source, element, has_direction, has_position);
+  reading.project.scene.lights.push_back(light);
+}
+
+void read_material_library(Reading& reading, const XmlElement& element) {
+  const std::string path = path_of(reading, element);
+  if (!exists(path)) warn(reading.source, element.line, path + ": no such file");
+}
+
+}  // namespace
+
+void read_assets(Reading& reading, const XmlElement& assets) {
+  for (const XmlElement& child : assets.children) {
+    if (same_name(child.name, "scenes")) {
+      each(reading, child, "scene", [&](const XmlElement& e) { read_scene(reading, e); });
+    } else if (same_name(child.name, "viewports")) {
+      each(reading, child, "viewport", [&](const XmlElement& e) { read_viewport(reading, e); });
+    } else if (same_name(child.name, "cameras")) {
+      each(reading, child, "camera", [&](const XmlElement& e) { read_camera(reading, e); });
+    } else if (same_name(child.name, "lights")) {
+      each(reading, child, "light", [&](const XmlElement& e) { read_light(reading, e); });
+    } else if (same_name(child.name, "materialLibs")) {
+      each(reading, child, "mlib", [&](const XmlElement& e) { read_material_library(reading, e); });
+    } else {
+      warn_unknown_child(reading.source, assets, child);
+    }
+  }
+}
+
+}  // namespace vitral
