@@ -29,8 +29,18 @@ std::string slurp(const fs::path& file) {
   return text.str();
 }
 
+// A path as one word of a shell command, and a space.
+std::string word(const fs::path& path) {
+  std::string quoted = path.string();
+  quoted.insert(quoted.begin(), '\'');
+  quoted += "' ";
+  return quoted;
+}
+
 int run(const std::string& arguments) {
-  const std::string command = "'" + std::string(std::getenv("PLAZA")) + "' " + arguments + " >/dev/null 2>&1";
+  std::string command = word(std::getenv("PLAZA"));
+  command += arguments;
+  command += " >/dev/null 2>&1";
   const int status = std::system(command.c_str());
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
@@ -116,7 +126,7 @@ class Plaza : public testing::Test {
     if (!folder_.empty()) fs::remove_all(folder_);
   }
   fs::path generate(const std::string& name, const std::string& options) {
-    EXPECT_EQ(run("'" + (folder_ / name).string() + "' " + options), 0);
+    EXPECT_EQ(run(word(folder_ / name) + options), 0);
     return folder_ / name;
   }
   fs::path folder_;
@@ -174,10 +184,10 @@ TEST_F(Plaza, TwoRunsWriteTheSameBytes) {
 
 TEST_F(Plaza, BadCommandLinesAreUsageErrors) {
   EXPECT_EQ(run(""), 2);
-  EXPECT_EQ(run("'" + folder_.string() + "' --detail"), 2);
-  EXPECT_EQ(run("'" + folder_.string() + "' --detail -1"), 2);
-  EXPECT_EQ(run("'" + folder_.string() + "' --detail many"), 2);
-  EXPECT_EQ(run("'" + folder_.string() + "' other"), 2);
+  EXPECT_EQ(run(word(folder_) + "--detail"), 2);
+  EXPECT_EQ(run(word(folder_) + "--detail -1"), 2);
+  EXPECT_EQ(run(word(folder_) + "--detail many"), 2);
+  EXPECT_EQ(run(word(folder_) + "other"), 2);
   EXPECT_FALSE(fs::exists(folder_)) << "nothing is written for a wrong command line";
   EXPECT_EQ(run("/dev/null/folder"), 1);
 }

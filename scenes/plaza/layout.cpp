@@ -86,7 +86,10 @@ void houses(Mesh& mesh, const Plan& plan) {
   for (const auto& [west_end, bays] : {std::pair{plan.west + 8, 4}, std::pair{28.0, 5}}) {
     const Frame gallery = wall_frame({west_end, plan.curb, plan.south}, 0);
     const double top = arcade(mesh, gallery, bays, bay, Finish::plain);
-    box(mesh, Surface::stone, gallery, {-0.1, top - 0.02, -4.4}, {bays * bay + 0.1, top + 0.2, 0.25});
+    // The shops behind the gallery lie under the same terrace.
+    box(mesh, Surface::plaster_white, gallery, {0.01, -0.1, -6.8}, {bays * bay - 0.01, top - 0.03, -4.21},
+        kLeft | kRight | kBack);
+    box(mesh, Surface::stone, gallery, {-0.1, top - 0.02, -6.9}, {bays * bay + 0.1, top + 0.2, 0.25});
     balustrade(mesh, moved(gallery, {0, top + 0.2, 0}), 0, bays * bay);
   }
   row(mesh, wall_frame({plan.west - 8, 0, plan.south - 20}, 0),

@@ -145,8 +145,10 @@ void skyline(Mesh& mesh, const Plan& plan) {
     const double x = hill.center.x + between(random, -190, 190), z = hill.center.z - between(random, 34, 130);
     if (z < plan.north + 70) continue;
     const uint32_t id = hash(900, static_cast<uint32_t>(i));
-    far_house(mesh, turned(on_hill(x, z), between(random, -35, 35)), between(random, 3.5, 8),
-              between(random, 3, 5), between(random, 6, 11), id);
+    // One draw a statement: the order in which arguments are evaluated is the compiler's own.
+    const double heading = between(random, -35, 35), half = between(random, 3.5, 8);
+    const double deep = between(random, 3, 5), height = between(random, 6, 11);
+    far_house(mesh, turned(on_hill(x, z), heading), half, deep, height, id);
   }
   church(mesh, turned(moved(toward, {-9, 0, -(plan.north + 85)}), 8));
 }
