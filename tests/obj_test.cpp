@@ -315,5 +315,37 @@ TEST(Obj, DoesNotDependOnTheNumberOfThreads) {
   }
 }
 
+// Lines that are longer than a chunk, among them one polygon of 16000 corners.
+TEST(Obj, ReadsLinesOfAnyLength) {
+  const int n = 16000;
+  std::string text = "#" + std::string(700000, 'x') + "\n", face = "f";
+  for (int i = 0; i < n; ++i) {
+    const int side = i / (n / 4), along = i % (n / 4);
+    const int x = side == 0 ? along : side == 1 ? n / 4 : side == 2 ? n / 4 - along : 0;
+    const int y = side == 0 ? 0 : side == 1 ? along : side == 2 ? n / 4 : n / 4 - along;
+    text.append("v ").append(std::to_string(x)).append(" ").append(std::to_string(y)).append(" 0\n");
+    face.append(40, ' ').append(std::to_string(i + 1));
+  }
+  for (const int threads : {1, 4}) {
+    const Mesh m = load_text(text + face + "\n", threads).scene.mesh;
+    EXPECT_EQ(m.triangles.size(), static_cast<size_t>(n) - 2) << "corners on a straight line are kept";
+    EXPECT_NEAR(area(m), 4000.0 * 4000.0, 1e-3);
+  }
+}
+
+TEST(Obj, AHugeFileOfNothingIsRefusedAtOnce) {
+  const TemporaryFolder folder;
+  Scene scene;
+  Warnings warnings;
+  for (const char* const name : {"a.obj", "a.ply"}) {
+    const std::string path = folder.write(name, "");
+    std::error_code error;
+    std::filesystem::resize_file(path, uint64_t{1} << 40, error);  // a hole: it takes no room on the disk
+    if (error) GTEST_SKIP() << error.message();
+    EXPECT_NE(error_of<InputError>([&] { load_mesh(path, scene, warnings); }).find("not a"),
+              std::string::npos);
+  }
+}
+
 }  // namespace
 }  // namespace vitral

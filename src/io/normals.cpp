@@ -1,5 +1,6 @@
 #include "io/normals.h"
 
+#include "io/memory.h"
 #include "io/threads.h"
 
 #include <algorithm>
@@ -67,6 +68,7 @@ class Smoother {
 
   // The corners in need of a normal, in the order of the triangles.
   void find_corners() {
+    reserve_large(needy_, 3 * count_);
     for (size_t t = 0; t < count_; ++t) {
       if (!groups_.empty() && groups_[t] == 0) continue;
       for (size_t k = 0; k < 3; ++k) {
@@ -78,10 +80,11 @@ class Smoother {
 
   // Gives the positions of the triangles of these corners consecutive numbers, in their own order.
   void number_positions() {
-    number_.assign(mesh_.positions.size(), kNoIndex);
+    resize_large(number_, mesh_.positions.size(), kNoIndex);
     for (const uint32_t corner : needy_) {
       for (const uint32_t p : mesh_.triangles[first_ + corner / 3]) number_[p] = 0;
     }
+    reserve_large(positions_, number_.size());
     for (uint32_t p = 0; p < number_.size(); ++p) {
       if (number_[p] == kNoIndex) continue;
       number_[p] = static_cast<uint32_t>(positions_.size());
@@ -95,7 +98,8 @@ class Smoother {
   void weld_positions() {
     size_t slots = 16;
     while (slots < 2 * positions_.size()) slots *= 2;
-    std::vector<uint32_t> table(slots, kNoIndex);
+    std::vector<uint32_t> table;
+    resize_large(table, slots, kNoIndex);
     for (uint32_t n = 0; n < positions_.size(); ++n) {
       const Vec3& at = mesh_.positions[positions_[n]];
       size_t slot = hash_position(at + Vec3{0, 0, 0}) & (slots - 1);  // -0 becomes +0
@@ -114,10 +118,10 @@ class Smoother {
 
   // Sorts the corners by position; those of one position stay in the order of their triangles.
   void sort_corners() {
-    begin_.assign(positions_.size() + 1, 0);
+    resize_large(begin_, positions_.size() + 1, uint32_t{0});
     for (const uint32_t corner : needy_) ++begin_[number_[position_of(corner)] + 1];
     for (size_t i = 1; i < begin_.size(); ++i) begin_[i] += begin_[i - 1];
-    corners_.resize(needy_.size());
+    resize_large(corners_, needy_.size());
     std::vector<uint32_t> cursor(begin_.begin(), begin_.end() - 1);
     for (const uint32_t corner : needy_) corners_[cursor[number_[position_of(corner)]]++] = corner;
     needy_ = {};

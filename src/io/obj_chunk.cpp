@@ -10,6 +10,9 @@
 namespace vitral {
 namespace {
 
+constexpr size_t kLookAhead = 4096;                  // enough for nearly every statement
+constexpr size_t kMaxStatement = size_t{256} << 20;  // bytes
+
 // Reads the statements of one chunk. Every `read_` function leaves the cursor somewhere before the
 // end of the statement's line.
 class ChunkReader {
@@ -220,47 +223,69 @@ const char* find_statement(const char* p, const char* end) {
   return end;
 }
 
-// Whether the statement that holds the byte before `p` surely ends before `end`.
-bool ends_before(const char* p, const char* end) {
-  return find_statement(p, end) != end;
-}
+// The bytes of a file from three before `begin` on, where line feeds stand in front of the file.
+class Window {
+ public:
+  Window(const InputFile& file, uint64_t begin, std::vector<char>& buffer)
+      : file_(file), begin_(begin), buffer_(buffer) {
+    const auto lead = static_cast<size_t>(std::min<uint64_t>(begin, 3));
+    if (buffer_.size() < 4) buffer_.resize(4);
+    std::memset(buffer_.data(), '\n', 3);
+    file_.read(begin_ - lead, {buffer_.data() + 3 - lead, lead});
+  }
+
+  // Makes at least `size` bytes after `begin` readable, or all that there are.
+  void extend(uint64_t size) {
+    const auto wanted = static_cast<size_t>(std::min(size, file_.size() - begin_));
+    if (wanted <= size_) return;
+    if (buffer_.size() < wanted + 4) {
+      prefer_large_pages(buffer_.data(), buffer_.capacity());
+      buffer_.resize(wanted + 4);
+    }
+    file_.read(begin_ + size_, {buffer_.data() + 3 + size_, wanted - size_});
+    size_ = wanted;
+    buffer_[3 + size_] = '\n';  // the sentinel of Cursor
+  }
+
+  const char* text() const { return buffer_.data() + 3; }
+  size_t size() const { return size_; }
+  bool at_end_of_file() const { return begin_ + size_ == file_.size(); }
+
+ private:
+  const InputFile& file_;
+  uint64_t begin_;
+  std::vector<char>& buffer_;
+  size_t size_ = 0;
+};
 
 }  // namespace
 
 ObjChunk read_obj_chunk(const InputFile& file, uint64_t begin, uint64_t end, std::vector<char>& buffer) {
   ObjChunk chunk;
 
-  // Three bytes before the chunk tell whether a statement starts at its first byte; in front of the
-  // file stand line feeds. Read on after the chunk until its last statement is whole.
-  const uint64_t lead = std::min<uint64_t>(begin, 3);
   const auto length = static_cast<size_t>(end - begin);
-  size_t read = 0;  // bytes after `begin`
-  for (size_t wanted = length + 4096;; wanted *= 2) {
-    wanted = static_cast<size_t>(std::min<uint64_t>(wanted, file.size() - begin));
-    if (buffer.empty()) reserve_large(buffer, wanted + 4);
-    if (buffer.size() < wanted + 4) buffer.resize(wanted + 4);
-    if (read == 0) {
-      std::memset(buffer.data(), '\n', 3);
-      file.read(begin - lead, {buffer.data() + 3 - lead, static_cast<size_t>(lead)});
-    }
-    file.read(begin + read, {buffer.data() + 3 + read, wanted - read});
-    read = wanted;
-    if (begin + read == file.size()) break;
-    if (ends_before(buffer.data() + 3 + length, buffer.data() + 3 + read)) break;
-  }
-  char* const text = buffer.data() + 3;
-  text[read] = '\n';
-
-  if (begin == 0 && std::memchr(text, '\0', std::min<size_t>(read, 4096)) != nullptr) {
+  Window window(file, begin, buffer);
+  window.extend(length + kLookAhead);
+  if (begin == 0 && std::memchr(window.text(), '\0', std::min<size_t>(window.size(), 4096)) != nullptr) {
     chunk.error = {0, "not an OBJ file: it holds binary data", 1};
     return chunk;
   }
-  const char* start = find_statement(text, text + length);
-  if (begin == 0 && read >= 3 && std::memcmp(text, "\xef\xbb\xbf", 3) == 0) start = text + 3;  // UTF-8 mark
+  if (find_statement(window.text(), window.text() + length) == window.text() + length) return chunk;
+
+  // Read on until another statement begins: then the last of this chunk is whole.
+  while (!window.at_end_of_file() && find_statement(window.text() + length, window.text() + window.size()) ==
+                                         window.text() + window.size()) {
+    if (window.size() > length + kMaxStatement) fail(file.path(), "a line is longer than 256 MiB");
+    window.extend(2 * window.size());
+  }
+  const char* const text = window.text();
+  const bool has_mark =
+      begin == 0 && window.size() >= 3 && std::memcmp(text, "\xef\xbb\xbf", 3) == 0;  // UTF-8
+  const char* const start = has_mark ? text + 3 : find_statement(text, text + length);
   reserve_large(chunk.positions, length / 24);
   reserve_large(chunk.corners, length / 12);
   reserve_large(chunk.faces, length / 40);
-  ChunkReader(Cursor{start, text + read, 0}, text + length, chunk).run();
+  ChunkReader(Cursor{start, text + window.size(), 0}, text + length, chunk).run();
   return chunk;
 }
 

@@ -108,6 +108,7 @@ class PlyLoader {
 
   void load() {
     {
+      check_magic();
       std::string bytes = read_file(path_, kMaxFileBytes);
       const PlyHeader header = read_ply_header(bytes, path_);
       find_vertex_count(header);
@@ -121,6 +122,15 @@ class PlyLoader {
   }
 
  private:
+  // Before a large file is read that is none.
+  void check_magic() const {
+    const InputFile file(path_);
+    std::array<char, 4> magic{};
+    const auto size = static_cast<size_t>(std::min<uint64_t>(file.size(), magic.size()));
+    file.read(0, {magic.data(), size});
+    check_ply_magic({magic.data(), size}, path_);
+  }
+
   // Where a vertex keeps the number that a property holds.
   enum Slot { x, y, z, nx, ny, nz, u, v, kSlots, elsewhere };
 

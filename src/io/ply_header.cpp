@@ -45,10 +45,7 @@ class HeaderReader {
   HeaderReader(std::string_view bytes, const std::string& path) : bytes_(bytes), path_(path) {}
 
   PlyHeader read() {
-    if (bytes_.empty()) fail(path_, "the file is empty");
-    if (bytes_.substr(0, 3) != "ply" || bytes_.size() < 4 || !is_newline(bytes_[3])) {
-      fail(path_, "not a PLY file: it does not begin with 'ply'");
-    }
+    check_ply_magic(bytes_, path_);
     next_line();
     while (read_statement(words_of(next_line()))) {
     }
@@ -163,6 +160,13 @@ size_t byte_size(PlyType type) {
       return 8;
   }
   return 0;
+}
+
+void check_ply_magic(std::string_view bytes, const std::string& path) {
+  if (bytes.empty()) fail(path, "the file is empty");
+  if (bytes.substr(0, 3) != "ply" || bytes.size() < 4 || !is_newline(bytes[3])) {
+    fail(path, "not a PLY file: it does not begin with 'ply'");
+  }
 }
 
 PlyHeader read_ply_header(std::string_view bytes, const std::string& path) {

@@ -33,6 +33,9 @@ struct PlyHeader {
 
 size_t byte_size(PlyType type);
 
+// Throws InputError unless the file begins as a PLY file does; four bytes are enough to tell.
+void check_ply_magic(std::string_view bytes, const std::string& path);
+
 // Reads the header of `bytes`, the whole file. Throws InputError, also when the elements promised
 // could not fit into the file: every row takes at least its numbers, every list its count.
 PlyHeader read_ply_header(std::string_view bytes, const std::string& path);

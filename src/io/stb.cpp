@@ -35,7 +35,8 @@ void* stb_reallocate(void* old, size_t old_bytes, size_t bytes) {
 // In broken files its integer arithmetic leaves the range of int. Whatever comes out is a picture as
 // good as any: the numbers wrap around, and the sanitizers need not tell.
 #if defined(__clang__)
-#pragma clang attribute push(__attribute__((no_sanitize("signed-integer-overflow", "shift"))), apply_to = function)
+#pragma clang attribute push(__attribute__((no_sanitize("signed-integer-overflow", "shift"))), \
+                             apply_to = function)
 #elif defined(__GNUC__)
 #pragma GCC push_options
 #pragma GCC optimize("wrapv")

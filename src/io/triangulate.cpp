@@ -63,40 +63,30 @@ class Ring {
       s_.next[i] = i + 1 == size_ ? 0 : i + 1;
       s_.previous[i] = i == 0 ? static_cast<uint32_t>(size_) - 1 : i - 1;
     }
-    s_.reflex.clear();
-    for (uint32_t i = 0; i < size_; ++i) {
-      if (turn(i) <= 0) s_.reflex.push_back(i);
-    }
+    sort_reflex_corners();
   }
 
   size_t size() const { return size_; }
   uint32_t next(uint32_t i) const { return s_.next[i]; }
+  bool is_cut(uint32_t i) const { return s_.next[i] == kGone; }
   LocalCorners triangle(uint32_t i) const { return {s_.previous[i], i, s_.next[i]}; }
   double turn(uint32_t i) const {
     return area2(s_.points[s_.previous[i]], s_.points[i], s_.points[s_.next[i]]);
   }
 
   // A corner is an ear when the outline turns left there and no other corner of the outline lies
-  // in its triangle. Only corners that are not convex can do that. Corners at the same place as one
-  // of the triangle's are no obstacle: outlines with holes touch themselves so. `steps` is counted
-  // down by the corners looked at.
+  // in its triangle. Only corners where it does not turn left can do that. Corners at the same place
+  // as one of the triangle's are no obstacle: outlines with holes touch themselves so. `steps` is
+  // counted down by the cells and corners looked at.
   bool is_ear(uint32_t i, size_t& steps) {
     if (turn(i) <= 0) return false;
     const Vec2d a = s_.points[s_.previous[i]], b = s_.points[i], c = s_.points[s_.next[i]];
-    for (size_t k = 0; k < s_.reflex.size();) {
-      if (steps > 0) --steps;
-      const uint32_t r = s_.reflex[k];
-      if (s_.next[r] == kGone || turn(r) > 0) {
-        s_.reflex[k] = s_.reflex.back();
-        s_.reflex.pop_back();
-        continue;
+    const size_t left = column(std::min({a.x, b.x, c.x})), right = column(std::max({a.x, b.x, c.x}));
+    const size_t bottom = row(std::min({a.y, b.y, c.y})), top = row(std::max({a.y, b.y, c.y}));
+    for (size_t y = bottom; y <= top; ++y) {
+      for (size_t x = left; x <= right; ++x) {
+        if (!is_cell_clear(y * side_ + x, a, b, c, steps)) return false;
       }
-      const Vec2d p = s_.points[r];
-      if (contains(a, b, c, p) && !same(p, a) && !same(p, b) && !same(p, c)) {
-        std::swap(s_.reflex[0], s_.reflex[k]);  // likely to be in the way next time too
-        return false;
-      }
-      ++k;
     }
     return true;
   }
@@ -110,8 +100,66 @@ class Ring {
 
  private:
   static constexpr uint32_t kGone = 0xffffffffu;
+
+  // With the cube root of their number as the grid's side a small ear meets few corners, and a large
+  // one not too many cells.
+  void sort_reflex_corners() {
+    Vec2d high = s_.points[0];
+    low_ = high;
+    size_t count = 0;
+    for (uint32_t i = 0; i < size_; ++i) {
+      const Vec2d p = s_.points[i];
+      low_ = {std::min(low_.x, p.x), std::min(low_.y, p.y)};
+      high = {std::max(high.x, p.x), std::max(high.y, p.y)};
+      if (turn(i) <= 0) ++count;
+    }
+    while ((side_ + 1) * (side_ + 1) * (side_ + 1) <= count) ++side_;
+    const auto cells = static_cast<double>(side_);
+    scale_ = {high.x > low_.x ? cells / (high.x - low_.x) : 0,
+              high.y > low_.y ? cells / (high.y - low_.y) : 0};
+
+    // A counting sort; the ends move up while the cells are filled.
+    s_.cell_begin.assign(side_ * side_ + 1, 0);
+    for (uint32_t i = 0; i < size_; ++i) {
+      if (turn(i) <= 0) ++s_.cell_begin[cell(i) + 1];
+    }
+    for (size_t k = 1; k < s_.cell_begin.size(); ++k) s_.cell_begin[k] += s_.cell_begin[k - 1];
+    s_.cell_end = s_.cell_begin;
+    s_.reflex.resize(count);
+    for (uint32_t i = 0; i < size_; ++i) {
+      if (turn(i) <= 0) s_.reflex[s_.cell_end[cell(i)]++] = i;
+    }
+  }
+
+  size_t slice(double offset) const {
+    return offset > 0 ? std::min(static_cast<size_t>(offset), side_ - 1) : 0;
+  }
+  size_t column(double x) const { return slice((x - low_.x) * scale_.x); }
+  size_t row(double y) const { return slice((y - low_.y) * scale_.y); }
+  size_t cell(uint32_t i) const { return row(s_.points[i].y) * side_ + column(s_.points[i].x); }
+
+  // Whether no corner of the cell lies in triangle abc. Corners that are cut off or have become
+  // convex leave the cell.
+  bool is_cell_clear(size_t cell, const Vec2d& a, const Vec2d& b, const Vec2d& c, size_t& steps) {
+    if (steps > 0) --steps;
+    for (uint32_t k = s_.cell_begin[cell]; k < s_.cell_end[cell];) {
+      if (steps > 0) --steps;
+      const uint32_t r = s_.reflex[k];
+      if (is_cut(r) || turn(r) > 0) {
+        s_.reflex[k] = s_.reflex[--s_.cell_end[cell]];
+        continue;
+      }
+      const Vec2d p = s_.points[r];
+      if (contains(a, b, c, p) && !same(p, a) && !same(p, b) && !same(p, c)) return false;
+      ++k;
+    }
+    return true;
+  }
+
   TriangulateScratch& s_;
   size_t size_;
+  size_t side_ = 1;  // cells of the grid along each axis
+  Vec2d low_{0, 0}, scale_{0, 0};
 };
 
 bool finite(const Vec3& p) {
@@ -154,29 +202,38 @@ void triangulate(std::span<const Vec3> polygon, TriangulateScratch& scratch,
     return;
   }
 
-  // Go round and cut every ear met. A whole round without one means that the outline crosses itself
-  // (or that rounding says so): then a corner that merely turns left is cut, or else any corner.
+  // Look at all corners in turn and cut those that are ears. A cut makes only its two neighbours
+  // worth another look, which they get at the end of the queue: so the triangles stay stout. When
+  // nobody in the whole outline is an ear it crosses itself (or rounding says so): then a corner
+  // that merely turns left is cut, or else any corner.
   Ring ring(polygon, scratch);
-  size_t steps = 1024 * n;
+  std::vector<uint32_t>& queue = scratch.queue;
   enum { ears, left_turns, anything } accept = ears;
-  size_t failures = 0;
-  uint32_t i = 1;
-  while (ring.size() > 3) {
-    if (steps == 0) accept = anything;
-    const bool good = accept == anything || (accept == left_turns ? ring.turn(i) > 0 : ring.is_ear(i, steps));
-    if (good) {
-      triangles.push_back(ring.triangle(i));
-      ring.cut(i);
-      accept = ears;
-      failures = 0;
-    } else if (++failures >= ring.size()) {
-      accept = accept == ears ? left_turns : anything;
-      failures = 0;
+  size_t steps = 1024 * n, cuts = 1;
+  uint32_t left = 0;  // a corner that is left
+  queue.clear();
+  for (size_t head = 0; ring.size() > 3; ++head) {
+    if (head == queue.size()) {
+      if (cuts == 0) accept = accept == ears ? left_turns : anything;
+      cuts = head = 0;
+      queue.clear();
+      for (size_t k = 0; k < ring.size(); ++k, left = ring.next(left)) queue.push_back(left);
     }
-    if (steps > 0) --steps;
-    i = good ? ring.next(triangles.back()[2]) : ring.next(i);
+    const uint32_t i = queue[head];
+    if (ring.is_cut(i)) continue;
+    if (steps == 0) accept = anything;
+    if (!(accept == anything || (accept == left_turns ? ring.turn(i) > 0 : ring.is_ear(i, steps)))) continue;
+    triangles.push_back(ring.triangle(i));
+    ring.cut(i);
+    const auto [before, cut, after] = triangles.back();
+    queue.push_back(before);
+    queue.push_back(after);
+    if (queue[head + 1] == after) ++head;
+    left = after;
+    accept = ears;
+    ++cuts;
   }
-  triangles.push_back(ring.triangle(i));
+  triangles.push_back(ring.triangle(left));
 }
 
 }  // namespace vitral

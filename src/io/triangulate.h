@@ -20,7 +20,9 @@ using LocalCorners = std::array<uint32_t, 3>;  // numbers of corners within the 
 struct TriangulateScratch {
   std::vector<Vec2T<double>> points;  // projected
   std::vector<uint32_t> next, previous;
-  std::vector<uint32_t> reflex;  // corners where the outline turns right or goes straight on
+  // Corners where the outline does not turn left, sorted into the cells of a square grid.
+  std::vector<uint32_t> reflex, cell_begin, cell_end;
+  std::vector<uint32_t> queue;  // corners to be looked at
 };
 
 // Replaces `triangles` by the n - 2 triangles of a polygon of n >= 3 corners, wound as the polygon
