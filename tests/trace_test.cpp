@@ -11,8 +11,6 @@
 namespace vitral::test {
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
 // Rays of every kind that has ever broken a tracer, aimed at the given triangles.
 Ray nasty_ray(Random& random, const std::vector<KdTriangle>& triangles, uint32_t kind) {
   const KdTriangle& t = triangles[random.below(static_cast<uint32_t>(triangles.size()))];
@@ -108,7 +106,7 @@ TEST_P(EveryIsa, PacketsEqualTheWalk) {
     Random random(11);
     int hits = 0;
     for (uint32_t packet = 0; packet < 120; ++packet) {
-      RayPacket rays;
+      RayPacket rays{};
       rays.tmin = packet % 4 == 0 ? 0.5f : 0.0f;
       for (int lane = 0; lane < kPacketSize; ++lane) {
         // Some packets hold one kind of ray, as real ones do, others a mixture.
@@ -146,7 +144,7 @@ TEST_P(EveryIsa, GlassAndCutOutsAreTheSame) {
   const Tree tree(std::move(list), {left_half_only, nullptr});
   int blocked = 0, differs = 0;
   for (uint32_t packet = 0; packet < 60; ++packet) {
-    RayPacket rays;
+    RayPacket rays{};
     rays.live = ~0ull;
     for (int lane = 0; lane < kPacketSize; ++lane) set_ray(rays, lane, nasty_ray(random, tree.triangles, random.bits()));
     HitPacket found;
@@ -177,7 +175,7 @@ TEST_P(EveryIsa, RaysThatMakeNoSenseHitNothing) {
       {{0, 0, 0}, 0, {1, 0, 0}, nan},               {{0, 0, 0}, 0, {1, 0, 0}, 0},
   };
   for (const Ray& ray : bad) {
-    RayPacket rays;
+    RayPacket rays{};
     rays.live = ~0ull;
     for (int lane = 0; lane < kPacketSize; ++lane) set_ray(rays, lane, lane % 2 ? ray : Ray{{0, 0, 0}, 0, {0, 1, 0.1f}, kInfinity});
     HitPacket found;
@@ -193,7 +191,7 @@ TEST_P(EveryIsa, RaysThatMakeNoSenseHitNothing) {
 
 TEST_P(EveryIsa, EmptySceneHasNoHits) {
   const Tree tree({});
-  RayPacket rays;
+  RayPacket rays{};
   rays.live = ~0ull;
   Random random(1);
   for (int lane = 0; lane < kPacketSize; ++lane) set_ray(rays, lane, {random.in_box(-1, 1), 0, random.direction(), kInfinity});
@@ -221,7 +219,7 @@ TEST_P(EveryIsa, ClosedMeshesAreWatertight) {
     Random random(3);
     uint64_t misses = 0;
     for (uint32_t packet = 0; packet < packets; ++packet) {
-      RayPacket rays;
+      RayPacket rays{};
       rays.live = ~0ull;
       for (int lane = 0; lane < kPacketSize; ++lane) {
         const Vec3 origin = c.center + random.in_box(-0.5f, 0.5f) * c.radius;

@@ -10,13 +10,14 @@ namespace vitral {
 inline constexpr int kBlockSide = 8;
 inline constexpr int kPacketSize = kBlockSide * kBlockSide;
 
-// A bit of `live` is set where the lane holds a ray; the other lanes hold any finite numbers.
+// A bit of `live` is set where the lane holds a ray; the other lanes hold any finite numbers. There
+// are no initial values: whoever makes a packet fills it.
 struct alignas(64) RayPacket {
   float ox[kPacketSize], oy[kPacketSize], oz[kPacketSize];
   float dx[kPacketSize], dy[kPacketSize], dz[kPacketSize];
   float tmax[kPacketSize];
-  float tmin = 0;  // of all lanes
-  uint64_t live = 0;
+  float tmin;  // of all lanes
+  uint64_t live;
 };
 
 struct alignas(64) HitPacket {

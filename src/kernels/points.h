@@ -9,7 +9,7 @@ struct alignas(64) PointPacket {
   float gx[kPacketSize], gy[kPacketSize], gz[kPacketSize];  // geometric normal, unit, turned to the viewer
   float nx[kPacketSize], ny[kPacketSize], nz[kPacketSize];  // shading normal, unit, turned to the viewer
   uint32_t key[kPacketSize];                                // seeds the point's random numbers
-  uint64_t live = 0;
+  uint64_t live;
 };
 
 // A secondary ray starts this far off the surface along the geometric normal: well beyond the error

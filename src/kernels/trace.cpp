@@ -297,9 +297,8 @@ uint64_t trace(const KdView& tree, const RayPacket& rays, GlassRule glass, HitPa
 }  // namespace
 
 void trace_closest(const KdView& tree, const RayPacket& rays, HitPacket& hits) {
-  const Hit nothing;
   for (int g = 0; g < kPacketSize; g += kLanes) {
-    store(hits.t + g, Float(nothing.t));
+    store(hits.t + g, Float(kInfinity));
     store(hits.u + g, Float(0.0f));
     store(hits.v + g, Float(0.0f));
     store(hits.triangle + g, Uint(kNoTriangle));

@@ -50,19 +50,18 @@ void intersect_visible(const Pinhole& camera, const KdTriangle* triangles, int x
   }
   gather(camera, triangles, numbers, seen);
 
-  const Hit nothing;
   for (int g = 0; g < kPacketSize; g += kLanes) {
     const Uint number = load(numbers + g);
     const Mask empty = number == Uint(kNoTriangle);
     store(hits.triangle + g, number);
     if (!any(invert(empty))) {
-      store(hits.t + g, Float(nothing.t)), store(hits.u + g, Float(0.0f)), store(hits.v + g, Float(0.0f));
+      store(hits.t + g, Float(kInfinity)), store(hits.u + g, Float(0.0f)), store(hits.v + g, Float(0.0f));
       continue;
     }
     const auto hit = visible_point(load_three(seen.corner, g), load_three(seen.corner + 3, g),
                                    load_three(seen.corner + 6, g), load_three(seen.direction, g),
                                    Float(camera.near), Float(camera.far));
-    store(hits.t + g, select(empty, Float(nothing.t), hit.t));
+    store(hits.t + g, select(empty, Float(kInfinity), hit.t));
     store(hits.u + g, select(empty, Float(0.0f), hit.u));
     store(hits.v + g, select(empty, Float(0.0f), hit.v));
   }

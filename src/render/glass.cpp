@@ -105,10 +105,11 @@ void trace_packet(const FrameContext& frame, const Path* paths, int count, std::
   RayPacket rays;
   HitPacket hits;
   SurfacePacket surfaces;
+  rays.tmin = 0;
   rays.live = count == kPacketSize ? ~0ull : (1ull << count) - 1;
   for (int lane = 0; lane < kPacketSize; ++lane) {
     const Path& p = paths[lane < count ? lane : 0];
-    set_ray(rays, lane, {p.origin, 0, p.direction, std::numeric_limits<float>::infinity()});
+    set_ray(rays, lane, {p.origin, 0, p.direction, kInfinity});
     surfaces.points.key[lane] = p.key;
   }
   const Pass pass = paths[0].kind == PathKind::reflection ? Pass::reflection : Pass::refraction;
