@@ -161,6 +161,12 @@ TEST(ImageFile, TextureRowsRunFromTheTop) {
   EXPECT_EQ(t.width, 1);
   EXPECT_EQ(t.height, 2);
   EXPECT_EQ(t.texels, (std::vector<uint8_t>{6, 5, 4, 255, 3, 2, 1, 255}));
+
+  // A negative height turns the order round.
+  std::string top_down = small_bmp();
+  top_down.replace(22, 4, "\xfe\xff\xff\xff");
+  EXPECT_EQ(load_texture(folder.write("b.bmp", top_down)).texels,
+            (std::vector<uint8_t>{3, 2, 1, 255, 6, 5, 4, 255}));
 }
 
 TEST(ImageFile, RefusesPicturesThatAreBrokenOrTooLarge) {

@@ -16,6 +16,7 @@ namespace vitral {
 namespace {
 
 constexpr uint64_t kMaxFileBytes = uint64_t{256} << 20;
+constexpr const char* kBroken = "the picture is broken, or of a kind that is not supported";
 constexpr uint64_t kMaxTexelBytes = uint64_t{256} << 20;
 
 struct Free {
@@ -49,9 +50,12 @@ Decoded decode(const std::string& path, std::string_view bytes, int channels, in
   {
     const StbAllocationLimit limit(size_t{1} << 20);
     if (stbi_info_from_memory(data, length, &width, &height, &stored) == 0) {
-      fail(path, "not a picture in PNG, JPEG, TGA or BMP format");
+      fail(path, is_png(bytes) || is_jpeg(bytes) || is_bmp(bytes)
+                     ? kBroken
+                     : "not a picture in PNG, JPEG, TGA or BMP format");
     }
   }
+  if (is_bmp(bytes) && height < 0 && height >= -kMaxImageSide) height = -height;  // its rows run from the top
   if (width <= 0 || height <= 0) fail(path, "the picture is empty");
   const uint64_t pixels = static_cast<uint64_t>(width) * static_cast<uint64_t>(height);
   if (width > kMaxImageSide || height > kMaxImageSide || pixels * 4 > kMaxTexelBytes) {
@@ -68,7 +72,7 @@ Decoded decode(const std::string& path, std::string_view bytes, int channels, in
       static_cast<size_t>(16 * pixels + 64 * static_cast<uint64_t>(height) + 2 * bytes.size()) +
       (size_t{1} << 20));
   Decoded texels(stbi_load_from_memory(data, length, &width, &height, &stored, channels));
-  if (!texels) fail(path, "the picture is broken, or of a kind that is not supported");
+  if (!texels) fail(path, kBroken);
   return texels;
 }
 
