@@ -91,10 +91,11 @@ static inline float largest_component(const Vec3& v) {
 
 // Rays that are not finite, start beyond 2^60, or whose direction has no usable length hit nothing.
 // The comparisons are false for NaN.
-static inline bool is_traceable(const Vec3& origin, const Vec3& direction) {
-  const float o = (absolute(origin.x) + absolute(origin.y)) + absolute(origin.z);
-  const float d = (absolute(direction.x) + absolute(direction.y)) + absolute(direction.z);
-  return o < 1.152921504606847e18f && d > 2.3283064365386963e-10f && d < 4294967296.0f;
+template <class F>
+static inline auto is_traceable(const Vec3T<F>& origin, const Vec3T<F>& direction) {
+  const F o = (absolute(origin.x) + absolute(origin.y)) + absolute(origin.z);
+  const F d = (absolute(direction.x) + absolute(direction.y)) + absolute(direction.z);
+  return both(o < F(1.152921504606847e18f), both(d > F(2.3283064365386963e-10f), d < F(4294967296.0f)));
 }
 
 // One ray, one lane at a time. The text to read first, and the reference for the packets.

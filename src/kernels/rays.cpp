@@ -1,5 +1,6 @@
 // Forms the rays of the passes, block by block, and runs the ambient occlusion pass, whose rays are
 // too many to be stored.
+#include "kernels/candidates.h"
 #include "kernels/points.h"
 #include "kernels/tables.h"
 #include "math/random.h"
@@ -64,6 +65,13 @@ void shadow_rays(const Light& light, const PointPacket& points, float offset, Ra
 // back above it.
 void ambient_occlusion(const KdView& tree, const PointPacket& points, const AmbientSettings& settings,
                        uint32_t* free_rays) {
+  Candidates candidates;
+  find_candidates(tree, points, settings.distance, settings.offset, candidates);
+  if (candidates.count == 0) {
+    const uint32_t all = static_cast<uint32_t>(settings.strata * settings.strata);
+    for (int g = 0; g < kPacketSize; g += kLanes) store(free_rays + g, Uint(all));
+    return;
+  }
   RayPacket rays;
   set_origins(points, settings.offset, rays);
   rays.tmin = 0;
@@ -85,7 +93,10 @@ void ambient_occlusion(const KdView& tree, const PointPacket& points, const Ambi
       store3(rays.dx, rays.dy, rays.dz, g, d);
     }
     rays.live = points.live;
-    const uint64_t free = points.live & ~trace_any(tree, rays, GlassRule::passes);
+    const uint64_t met = candidates.count <= kMaxCandidates
+                             ? test_any(tree, candidates, rays)
+                             : trace_any_from(tree, candidates.node, rays, GlassRule::passes);
+    const uint64_t free = points.live & ~met;
     for (int g = 0; g < kPacketSize; g += kLanes) {
       const Uint n = load(free_rays + g);
       store(free_rays + g, select(mask_of_bits(free >> g), n + Uint(1u), n));

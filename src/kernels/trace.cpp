@@ -9,6 +9,7 @@
 #include "kdtree/kdtree.h"
 #include "kdtree/triangle.h"
 #include "kernels/packet.h"
+#include "kernels/candidates.h"
 #include "kernels/tables.h"
 #include "simd/simd.h"
 
@@ -25,6 +26,7 @@ struct alignas(64) Derived {
   float t0[kPacketSize], t1[kPacketSize];                   // interval in the tree's box
   uint64_t z_is[3];                                         // rays whose dominant axis is x, y, z
   uint64_t traceable;
+  float reach;  // largest absolute coordinate of the origins
   float slack;
 };
 
@@ -34,21 +36,28 @@ inline bool group_empty(uint64_t lanes, int g) {
   return ((lanes >> g) & all) == 0;
 }
 
-void derive(const KdView& tree, const RayPacket& rays, Derived& d) {
-  d.z_is[0] = d.z_is[1] = d.z_is[2] = d.traceable = 0;
-  float reach = tree.magnitude;
-  for (int lane = 0; lane < kPacketSize; ++lane) {
-    if (!(rays.live >> lane & 1)) continue;
-    const Vec3 o{rays.ox[lane], rays.oy[lane], rays.oz[lane]};
-    if (!is_traceable(o, {rays.dx[lane], rays.dy[lane], rays.dz[lane]})) continue;
-    d.traceable |= 1ull << lane;
-    reach = vitral::greatest(reach, largest_component(o));
-  }
-  d.slack = traversal_slack(reach);
+// The largest number of a register.
+inline float greatest_lane(Float v) {
+  alignas(64) float lanes[kLanes];
+  store(lanes, v);
+  float most = lanes[0];
+  for (int i = 1; i < kLanes; ++i) most = vitral::greatest(lanes[i], most);
+  return most;
+}
 
+// Which rays can be traced at all, how far out their origins lie, and their shears.
+void derive_shears(const RayPacket& rays, Derived& d) {
+  d.z_is[0] = d.z_is[1] = d.z_is[2] = d.traceable = 0;
+  Float reach = Float(0.0f);
   for (int g = 0; g < kPacketSize; g += kLanes) {
-    if (group_empty(d.traceable, g)) continue;
+    if (group_empty(rays.live, g)) continue;
+    const Vec3T<Float> o{load(rays.ox + g), load(rays.oy + g), load(rays.oz + g)};
     const Float x = load(rays.dx + g), y = load(rays.dy + g), z = load(rays.dz + g);
+    const Mask good = both(is_traceable(o, Vec3T<Float>{x, y, z}), group_mask(rays.live, g));
+    d.traceable |= static_cast<uint64_t>(bits(good)) << g;
+    const Float farthest = greatest(absolute(o.x), greatest(absolute(o.y), absolute(o.z)));
+    reach = greatest(select(good, farthest, Float(0.0f)), reach);
+
     const Float ax = absolute(x), ay = absolute(y), az = absolute(z);
     // As dominant_axis() decides it.
     const Mask x_over_y = ax > ay;
@@ -61,8 +70,17 @@ void derive(const KdView& tree, const RayPacket& rays, Derived& d) {
                                 select(is_x, x, select(is_y, y, z))};
     const Shear<Float> shear = make_shear(permuted);
     store(d.sx + g, shear.x), store(d.sy + g, shear.y), store(d.sz + g, shear.z);
+  }
+  d.reach = greatest_lane(reach);
+}
 
-    const Float r[3] = {safe_reciprocal(x), safe_reciprocal(y), safe_reciprocal(z)};
+// Reciprocals, and the intervals of the rays in the tree's box.
+void derive_intervals(const KdView& tree, const RayPacket& rays, Derived& d) {
+  d.slack = traversal_slack(vitral::greatest(tree.magnitude, d.reach));
+  for (int g = 0; g < kPacketSize; g += kLanes) {
+    if (group_empty(d.traceable, g)) continue;
+    const Float r[3] = {safe_reciprocal(load(rays.dx + g)), safe_reciprocal(load(rays.dy + g)),
+                        safe_reciprocal(load(rays.dz + g))};
     store(d.rx + g, r[0]), store(d.ry + g, r[1]), store(d.rz + g, r[2]);
     const float* origin[3] = {rays.ox + g, rays.oy + g, rays.oz + g};
     Float t0 = Float(rays.tmin), t1 = load(rays.tmax + g);
@@ -192,22 +210,26 @@ inline void cut_intervals(uint64_t lanes, float split, const float* origin, cons
   }
 }
 
-// Walks the tree with `lanes`, whose directions all have the signs of bit 0-2 of `octant` (set:
+// The pointers for rays that run fastest along the same axis; false when they do not.
+inline bool find_viewer(const RayPacket& rays, const Derived& d, uint64_t lanes, Viewer& viewer) {
+  const float* origin[3] = {rays.ox, rays.oy, rays.oz};
+  for (int z = 0; z < 3; ++z) {
+    const int x = (z + 1) % 3, y = (z + 2) % 3;
+    viewer = {origin[x], origin[y], origin[z], x, y, z};
+    if ((lanes & ~d.z_is[z]) == 0) return true;
+  }
+  return false;
+}
+
+// Walks the tree from `node` with `lanes`, whose directions all have the signs of bit 0-2 of `octant` (set:
 // negative). Returns the lanes that met something.
 template <Query query>
-uint64_t walk_octant(const KdView& tree, const RayPacket& rays, const Derived& d, uint64_t lanes, int octant, GlassRule glass,
-                     HitPacket* hits) {
+uint64_t walk_octant(const KdView& tree, const RayPacket& rays, const Derived& d, uint64_t lanes, int octant, uint32_t node,
+                     GlassRule glass, HitPacket* hits) {
   const float* origin[3] = {rays.ox, rays.oy, rays.oz};
   const float* reciprocal[3] = {d.rx, d.ry, d.rz};
-  bool same_axis = false;
-  Viewer viewer{};
-  for (int z = 0; z < 3; ++z) {
-    if ((lanes & ~d.z_is[z]) == 0) {
-      same_axis = true;
-      const int x = (z + 1) % 3, y = (z + 2) % 3;
-      viewer = {origin[x], origin[y], origin[z], x, y, z};
-    }
-  }
+  Viewer viewer;
+  const bool same_axis = find_viewer(rays, d, lanes, viewer);
 
   Intervals now;
   for (int g = 0; g < kPacketSize; g += kLanes) {
@@ -216,7 +238,6 @@ uint64_t walk_octant(const KdView& tree, const RayPacket& rays, const Derived& d
   }
   Waiting stack[kMaxTreeDepth];
   int waiting = 0;
-  uint32_t node = 0;
   uint64_t open = lanes;  // rays that may still meet something new
   uint64_t met = 0;
   for (;;) {
@@ -273,9 +294,10 @@ uint64_t walk_octant(const KdView& tree, const RayPacket& rays, const Derived& d
 }
 
 template <Query query>
-uint64_t trace(const KdView& tree, const RayPacket& rays, GlassRule glass, HitPacket* hits) {
+uint64_t trace(const KdView& tree, const RayPacket& rays, uint32_t node, GlassRule glass, HitPacket* hits) {
   Derived d;
-  derive(tree, rays, d);
+  derive_shears(rays, d);
+  derive_intervals(tree, rays, d);
   uint64_t lanes = 0, negative[3] = {0, 0, 0};
   for (int g = 0; g < kPacketSize; g += kLanes) {
     if (group_empty(d.traceable, g)) continue;
@@ -289,7 +311,7 @@ uint64_t trace(const KdView& tree, const RayPacket& rays, GlassRule glass, HitPa
   for (int octant = 0; octant < 8; ++octant) {
     uint64_t mine = lanes;
     for (int a = 0; a < 3; ++a) mine &= octant >> a & 1 ? negative[a] : ~negative[a];
-    if (mine != 0) met |= walk_octant<query>(tree, rays, d, mine, octant, glass, hits);
+    if (mine != 0) met |= walk_octant<query>(tree, rays, d, mine, octant, node, glass, hits);
   }
   return met;
 }
@@ -303,11 +325,31 @@ void trace_closest(const KdView& tree, const RayPacket& rays, HitPacket& hits) {
     store(hits.v + g, Float(0.0f));
     store(hits.triangle + g, Uint(kNoTriangle));
   }
-  trace<Query::closest>(tree, rays, GlassRule::blocks, &hits);
+  trace<Query::closest>(tree, rays, 0, GlassRule::blocks, &hits);
 }
 
 uint64_t trace_any(const KdView& tree, const RayPacket& rays, GlassRule glass) {
-  return trace<Query::any>(tree, rays, glass, nullptr);
+  return trace<Query::any>(tree, rays, 0, glass, nullptr);
+}
+
+uint64_t trace_any_from(const KdView& tree, uint32_t node, const RayPacket& rays, GlassRule glass) {
+  return trace<Query::any>(tree, rays, node, glass, nullptr);
+}
+
+uint64_t test_any(const KdView& tree, const Candidates& candidates, const RayPacket& rays) {
+  Derived d;
+  derive_shears(rays, d);
+  Viewer viewer;
+  const bool same_axis = find_viewer(rays, d, d.traceable, viewer);
+  uint64_t met = 0;
+  for (int i = 0; i < candidates.count; ++i) {
+    const uint64_t lanes = d.traceable & candidates.lanes[i] & ~met;
+    if (lanes == 0) continue;
+    const uint32_t id = candidates.triangle[i];
+    met |= same_axis ? test_triangle<Query::any, true>(tree, rays, d, viewer, lanes, id, nullptr)
+                     : test_triangle<Query::any, false>(tree, rays, d, viewer, lanes, id, nullptr);
+  }
+  return met;
 }
 
 }  // namespace VITRAL_ISA
