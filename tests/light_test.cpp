@@ -427,6 +427,35 @@ TEST(Reflection, HitsGetTheFullTreatment) {
   EXPECT_NEAR(pixel(mirrored, 16, 16).x, pixel(direct, 16, 16).x, 0.12f);
 }
 
+// A speck far away, or a camera far away, must not move the origins of rays elsewhere.
+TEST(Shadow, DistantTrianglesAndCamerasChangeNothing) {
+  Scene scene;
+  const uint32_t white = add_material(scene, matte({1, 1, 1}));
+  add_floor(scene, white, 2);
+  add_quad(scene, white, {-0.5f, 0.001f, -0.5f}, {0, 0, 1}, {1, 0, 0});  // a millimetre above the floor
+  add_quad(scene, white, {0.7f, 0, -1}, {0, 0, 2}, {0, 1, 0});
+  scene.lights = {sun({1, -1, 0.5f})};
+  Settings s = small();
+  s.effects = {true, false, false, true};
+  s.ao_distance = 0.5f;
+  const Frame expected = render_scene(scene, kFromAbove, s);
+  for (const float far : {1e4f, 1e6f, 1e9f}) {
+    Scene crowded = scene;
+    add_quad(crowded, white, {far, -far, far}, {1, 0, 0}, {0, 0, 1});
+    EXPECT_TRUE(same_bytes(expected, render_scene(crowded, kFromAbove, s))) << far;
+  }
+  s.aovs = {"ao"};
+  double mean[2] = {0, 0};
+  for (const int i : {0, 1}) {
+    Camera c = camera_at({0, i == 0 ? 10.0f : 10000.0f, 0}, {0, -1, 0}, i == 0 ? 20.0f : 0.02f, {0, 0, -1});
+    c.near = c.position.y * 0.5f, c.far = c.position.y * 2;
+    const Frame frame = render_scene(scene, c, s);
+    for (const Vec3& v : frame.aovs[0].pixels.pixels) mean[i] += static_cast<double>(v.x) / 4096;
+  }
+  EXPECT_LT(mean[0], 0.98);
+  EXPECT_NEAR(mean[0], mean[1], 0.02);
+}
+
 TEST(NotFinite, PixelsAreRedAndCounted) {
   Scene scene;
   add_floor(scene, add_material(scene, matte({1, 1, 1})), 1);

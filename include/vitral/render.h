@@ -38,7 +38,8 @@ struct Settings {
   float ao_distance = 0.5f;    // > 0
   float ao_exponent = 1;       // > 0
   int max_depth = 5;           // generations of secondary rays, 0..100
-  float min_importance = 0.005f;  // a path is cut when the luminance of its weight falls under this
+  float min_importance = 0.005f;  // a path is cut when the luminance of its weight falls under this;
+                                  // below 1/4096 it counts as 1/4096
   Fresnel fresnel = Fresnel::exact;
   Compositing compositing = Compositing::physical;
   Primary primary = Primary::raster;
@@ -51,7 +52,8 @@ struct Settings {
 inline constexpr const char* kAovNames[] = {"position", "normal", "geometric-normal", "depth",     "albedo",    "material",
                                             "primitive", "shadow", "ao",              "reflection", "refraction"};
 
-// An auxiliary picture: 1 or 3 floats a pixel.
+// An auxiliary picture: 1 or 3 floats a pixel. Where nothing is seen it holds 0; `material` and
+// `primitive`, which are numbers from 0 on, hold -1.
 struct Aov {
   std::string name;
   int channels = 1;

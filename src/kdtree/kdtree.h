@@ -75,7 +75,11 @@ enum class GlassRule { blocks, passes };
 // may be off: under 2^-20 m together. With it no hit that testing all triangles would find is lost,
 // and the tree cannot be seen in the result (Ize, "Robust BVH Ray Traversal", JCGT 2013, argues so
 // for boxes).
-static inline float traversal_slack(float magnitude) { return magnitude * (1.0f / 262144.0f); }
+//
+// Among denormal numbers errors no longer shrink with the numbers: the slack is at least 2^-110.
+static inline float traversal_slack(float magnitude) {
+  return greatest(magnitude * (1.0f / 262144.0f), 7.703719777548943e-34f);
+}
 
 // Reciprocal of a direction's component, kept finite: with |d| below 2^-64 a ray does not leave the
 // slack around its start within any scene (coordinates are at most 1e18, directions about 1 long).

@@ -6,16 +6,24 @@ namespace vitral {
 namespace VITRAL_ISA {
 namespace {
 
-// The box of the rays' points, grown by how far they go and by the traversal's slack.
-Box reach_of(const KdView& tree, const PointPacket& points, float distance, float offset, float& slack) {
+// What the rays of a block can reach.
+struct Reach {
+  Box box;          // of their points, grown by how far they go and by the traversal's slack
+  float magnitude;  // largest coordinate of the points
+  float distance;
+};
+
+Reach reach_of(const KdView& tree, const PointPacket& points, float distance) {
   Box box{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
+  float offset = 0;
   for (int lane = 0; lane < kPacketSize; ++lane) {
-    if (points.live >> lane & 1) extend(box, Vec3{points.px[lane], points.py[lane], points.pz[lane]});
+    if (!(points.live >> lane & 1)) continue;
+    extend(box, Vec3{points.px[lane], points.py[lane], points.pz[lane]});
+    offset = vitral::greatest(points.offset[lane], offset);
   }
-  const float reach = distance * 1.00001f + offset;
-  slack = traversal_slack(vitral::greatest(tree.magnitude, magnitude(box) + reach));
-  const Vec3 grow{reach + slack, reach + slack, reach + slack};
-  return {box.min - grow, box.max + grow};
+  const float far = distance * 1.00001f + offset, size = magnitude(box);
+  const float grow = far + traversal_slack(vitral::greatest(tree.magnitude, size + far));
+  return {{box.min - Vec3{grow, grow, grow}, box.max + Vec3{grow, grow, grow}}, size, distance};
 }
 
 bool overlaps(const KdTriangle& t, const Box& box) {
@@ -27,9 +35,19 @@ bool overlaps(const KdTriangle& t, const Box& box) {
   return true;
 }
 
-// The points whose tangent plane the triangle rises above. A ray's direction is at most a few ulps
-// below the plane; a computed hit is within a quarter of the slack of its triangle.
-uint64_t lanes_above(const KdTriangle& t, const PointPacket& points, float offset, float margin) {
+float magnitude_of(const KdTriangle& t) {
+  float m = 0;
+  for (int a = 0; a < 3; ++a) {
+    for (int k = 0; k < 3; ++k) m = vitral::greatest(vitral::absolute(t.corner[k][a]), m);
+  }
+  return m;
+}
+
+// The points whose tangent plane, raised by the offset, the triangle rises above. The margin covers
+// directions that are some ulps below the plane, and hits that are computed off their triangle: by
+// less than 2^-20 of the largest coordinate that goes in.
+uint64_t lanes_above(const KdTriangle& t, const PointPacket& points, const Reach& reach) {
+  const float margin = (vitral::greatest(magnitude_of(t), reach.magnitude) + reach.distance) * (1.0f / 1048576);
   uint64_t above = 0;
   for (int g = 0; g < kPacketSize; g += kLanes) {
     const Vec3T<Float> n{load(points.gx + g), load(points.gy + g), load(points.gz + g)};
@@ -38,18 +56,18 @@ uint64_t lanes_above(const KdTriangle& t, const PointPacket& points, float offse
     for (const float* c : {t.corner[0], t.corner[1], t.corner[2]}) {
       highest = greatest(dot(n, Vec3T<Float>{Float(c[0]) - p.x, Float(c[1]) - p.y, Float(c[2]) - p.z}), highest);
     }
-    above |= static_cast<uint64_t>(bits(highest > Float(offset - margin))) << g;
+    above |= static_cast<uint64_t>(bits(highest > load(points.offset + g) - Float(margin))) << g;
   }
   return above & points.live;
 }
 
-void add(const KdView& tree, uint32_t id, const Box& box, const PointPacket& points, float offset, float margin, Candidates& out) {
+void add(const KdView& tree, uint32_t id, const PointPacket& points, const Reach& reach, Candidates& out) {
   const KdTriangle& t = tree.triangles[id];
-  if ((t.flags & kGlassTriangle) || !overlaps(t, box)) return;
+  if ((t.flags & kGlassTriangle) || !overlaps(t, reach.box)) return;
   for (int i = 0; i < out.count; ++i) {
     if (out.triangle[i] == id) return;
   }
-  const uint64_t lanes = lanes_above(t, points, offset, margin);
+  const uint64_t lanes = lanes_above(t, points, reach);
   if (lanes == 0) return;
   if (out.count < kMaxCandidates) {
     out.triangle[out.count] = id;
@@ -60,10 +78,9 @@ void add(const KdView& tree, uint32_t id, const Box& box, const PointPacket& poi
 
 }  // namespace
 
-void find_candidates(const KdView& tree, const PointPacket& points, float distance, float offset, Candidates& out) {
-  float slack;
-  const Box box = reach_of(tree, points, distance, offset, slack);
-  const float margin = 0.25f * slack + distance * (1.0f / 1048576);
+void find_candidates(const KdView& tree, const PointPacket& points, float distance, Candidates& out) {
+  const Reach reach = reach_of(tree, points, distance);
+  const Box& box = reach.box;
   out.count = 0;
 
   // Down to where the box lies on both sides of the plane: nothing outside this node can be met.
@@ -86,7 +103,7 @@ void find_candidates(const KdView& tree, const PointPacket& points, float distan
     const KdNode& n = tree.nodes[node];
     if (is_leaf(n)) {
       for (uint32_t i = 0; i < count(n) && out.count <= kMaxCandidates; ++i) {
-        add(tree, tree.references[first_reference(n) + i], box, points, offset, margin, out);
+        add(tree, tree.references[first_reference(n) + i], points, reach, out);
       }
       if (waiting == 0) return;
       node = stack[--waiting];

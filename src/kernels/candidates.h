@@ -21,9 +21,9 @@ struct Candidates {
   uint64_t lanes[kMaxCandidates];  // the points that may see it
 };
 
-// Opaque triangles that rays of length `distance` may meet, from the live points raised by `offset`
-// along their geometric normals, going nowhere below the plane through them.
-void find_candidates(const KdView& tree, const PointPacket& points, float distance, float offset, Candidates& out);
+// Opaque triangles that rays of length `distance` may meet, from the live points raised by their
+// offsets along their geometric normals, going nowhere below the planes through them.
+void find_candidates(const KdView& tree, const PointPacket& points, float distance, Candidates& out);
 
 // In trace.cpp: the live rays that meet any of the candidates; the any-hit walk below a node.
 uint64_t test_any(const KdView& tree, const Candidates& candidates, const RayPacket& rays);

@@ -25,7 +25,7 @@ struct Kernels {
   uint64_t (*trace_any)(const KdView& tree, const RayPacket& rays, GlassRule glass);
 
   // One ray from every live point that faces the light to the light; sets rays.live.
-  void (*shadow_rays)(const Light& light, const PointPacket& points, float offset, RayPacket& rays);
+  void (*shadow_rays)(const Light& light, const PointPacket& points, RayPacket& rays);
 
   // How many of the strata * strata ambient rays of each live point meet nothing opaque.
   void (*ambient_occlusion)(const KdView& tree, const PointPacket& points, const AmbientSettings& settings,

@@ -18,11 +18,11 @@ inline void store3(float* x, float* y, float* z, int g, const Vec3T<Float>& v) {
   store(x + g, v.x), store(y + g, v.y), store(z + g, v.z);
 }
 
-inline void set_origins(const PointPacket& points, float offset, RayPacket& rays) {
+inline void set_origins(const PointPacket& points, RayPacket& rays) {
   for (int g = 0; g < kPacketSize; g += kLanes) {
     const Vec3T<Float> p = load3(points.px, points.py, points.pz, g);
     const Vec3T<Float> n = load3(points.gx, points.gy, points.gz, g);
-    store3(rays.ox, rays.oy, rays.oz, g, p + n * Float(offset));
+    store3(rays.ox, rays.oy, rays.oz, g, p + n * load(points.offset + g));
   }
 }
 
@@ -41,8 +41,8 @@ void primary_rays(const Pinhole& camera, int x, int y, RayPacket& rays) {
 }
 
 // One ray per point that faces the light. Towards a point light t = 1 is the light.
-void shadow_rays(const Light& light, const PointPacket& points, float offset, RayPacket& rays) {
-  set_origins(points, offset, rays);
+void shadow_rays(const Light& light, const PointPacket& points, RayPacket& rays) {
+  set_origins(points, rays);
   rays.tmin = 0;
   rays.live = 0;
   const bool directional = light.kind == Light::Kind::directional;
@@ -66,14 +66,14 @@ void shadow_rays(const Light& light, const PointPacket& points, float offset, Ra
 void ambient_occlusion(const KdView& tree, const PointPacket& points, const AmbientSettings& settings,
                        uint32_t* free_rays) {
   Candidates candidates;
-  find_candidates(tree, points, settings.distance, settings.offset, candidates);
+  find_candidates(tree, points, settings.distance, candidates);
   if (candidates.count == 0) {
     const uint32_t all = static_cast<uint32_t>(settings.strata * settings.strata);
     for (int g = 0; g < kPacketSize; g += kLanes) store(free_rays + g, Uint(all));
     return;
   }
   RayPacket rays;
-  set_origins(points, settings.offset, rays);
+  set_origins(points, rays);
   rays.tmin = 0;
   for (int g = 0; g < kPacketSize; g += kLanes) {
     store(rays.tmax + g, Float(settings.distance));

@@ -8,7 +8,7 @@ namespace VITRAL_ISA {
 void primary_rays(const Pinhole& camera, int x, int y, RayPacket& rays);
 void trace_closest(const KdView& tree, const RayPacket& rays, HitPacket& hits);
 uint64_t trace_any(const KdView& tree, const RayPacket& rays, GlassRule glass);
-void shadow_rays(const Light& light, const PointPacket& points, float offset, RayPacket& rays);
+void shadow_rays(const Light& light, const PointPacket& points, RayPacket& rays);
 void ambient_occlusion(const KdView& tree, const PointPacket& points, const AmbientSettings& settings,
                        uint32_t* free_rays);
 void fill_tile(const RasterView& view, int tile_x, int tile_y, TileVisibility& out);

@@ -20,7 +20,6 @@ struct FrameContext {
   const Kernels& kernels;
   Pinhole camera;
   const RasterView* raster;             // null: primary rays are traced
-  float offset;                         // ray_offset() of this scene and camera
   float least_importance;               // settings.min_importance, at least 1/4096: what a surface sends
                                         // on weighs no more than what came, so no pixel has more paths
   int ao_strata;                        // n of n x n samples
@@ -30,7 +29,7 @@ struct FrameContext {
 enum class Pass { raster, shadows, reflection, refraction, ao, shade, resolve };
 inline constexpr size_t kPasses = 7;
 inline constexpr std::array<const char*, kPasses> kPassNames = {"raster",           "shadows", "reflection", "refraction",
-                                                                "ambient occlusion", "shade",   "resolve"};
+                                                                "ao", "shade",   "resolve"};
 
 struct PassTally {
   std::array<double, kPasses> seconds{};

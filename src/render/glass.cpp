@@ -16,7 +16,9 @@ struct Split {
   float cos_i = 1;
 };
 
-Split split_light(const Material& m, const Settings& settings, float cos_i, bool back) {
+enum class Side { front, back };
+
+Split split_light(const Material& m, const Settings& settings, float cos_i, Side side) {
   Split s;
   s.cos_i = cos_i;
   const Effects& on = settings.effects;
@@ -33,7 +35,7 @@ Split split_light(const Material& m, const Settings& settings, float cos_i, bool
       break;
     case Optics::solid:
     case Optics::thin: {
-      const bool leaving = back && m.optics == Optics::solid;
+      const bool leaving = side == Side::back && m.optics == Optics::solid;
       s.eta = leaving ? m.index : 1 / m.index;
       // Light that is totally reflected inside glass belongs to the refraction that brought it there.
       const bool total = refracted_cosine_squared(cos_i, s.eta) <= 0;
@@ -67,12 +69,12 @@ void spawn_at(const FrameContext& frame, const SurfacePacket& s, int lane, const
   Vec3 n = get(s.points.nx, s.points.ny, s.points.nz, lane);
   if (!(dot(n, incoming) < -1e-4f)) n = geometric;
   const float cos_i = least(greatest(-dot(n, incoming), 0.0f), 1.0f);
-  const Split split = split_light(m, frame.settings, cos_i, s.back >> lane & 1);
+  const Split split = split_light(m, frame.settings, cos_i, s.back >> lane & 1 ? Side::back : Side::front);
 
   if (luminance(parent.weight * split.reflected) >= frame.least_importance) {
     Vec3 d = reflect(incoming, n);
     if (!(dot(d, geometric) > 0)) d = reflect(d, geometric);
-    out.push_back(child_of(parent, PathKind::reflection, position + geometric * frame.offset, normalize(d), split.reflected));
+    out.push_back(child_of(parent, PathKind::reflection, position + geometric * s.points.offset[lane], normalize(d), split.reflected));
   }
   if (luminance(parent.weight * split.refracted) >= frame.least_importance) {
     Vec3 d = incoming;
@@ -81,7 +83,7 @@ void spawn_at(const FrameContext& frame, const SurfacePacket& s, int lane, const
       d = refract(incoming, n, split.eta, cos_i, cos_t);
       if (!(dot(d, geometric) < 0)) d = reflect(d, geometric);
     }
-    out.push_back(child_of(parent, PathKind::refraction, position - geometric * frame.offset, normalize(d), split.refracted));
+    out.push_back(child_of(parent, PathKind::refraction, position - geometric * s.points.offset[lane], normalize(d), split.refracted));
   }
 }
 

@@ -1,4 +1,5 @@
-// What the camera sees: the rasterizer's answer, or the tracer's. Both give the same hits.
+// What the camera sees: the rasterizer's answer, or the tracer's. Where both see
+// the same triangle they give the same hit; at silhouettes the rasterizer's snapped edges decide.
 #include "render/frame.h"
 
 namespace vitral {

@@ -193,8 +193,7 @@ Frame render_frame(const Scene& scene, const Accelerator& accelerator, const Cam
   const Rectangle crop = crop_of(settings);
 
   FrameContext frame{scene, settings, accelerator, choose_kernels(settings.isa), make_pinhole(camera, settings.width, settings.height),
-                     nullptr, 0, 0, 0, {}};
-  frame.offset = ray_offset(greatest(accelerator.view.magnitude, largest_component(camera.position)));
+                     nullptr, 0, 0, {}};
   frame.least_importance = greatest(settings.min_importance, 1.0f / 4096);
   frame.ao_strata = static_cast<int>(square_root(static_cast<float>(settings.ao_samples)) + 0.5f);
   for (int k = 0; k <= settings.ao_samples; ++k) {
@@ -210,7 +209,8 @@ Frame render_frame(const Scene& scene, const Accelerator& accelerator, const Cam
     const size_t index = static_cast<size_t>(std::find(std::begin(kAovNames), std::end(kAovNames), name) - std::begin(kAovNames));
     if (targets.by_index[index]) continue;
     const bool scalar = index == 3 || (index >= 5 && index <= 8);
-    out.aovs.push_back({name, scalar ? 1 : 3, Image<Vec3>(crop.width, crop.height, Vec3{0, 0, 0})});
+    const float nothing = index == 5 || index == 6 ? -1.0f : 0.0f;  // 0 is a number of a material, of a triangle
+    out.aovs.push_back({name, scalar ? 1 : 3, Image<Vec3>(crop.width, crop.height, Vec3{nothing, nothing, nothing})});
     targets.by_index[index] = &out.aovs.back();
     targets.any = true;
   }

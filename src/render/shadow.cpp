@@ -26,7 +26,7 @@ void light_visibility(const FrameContext& frame, const Light& light, const Point
   if (!frame.settings.effects.shadows) return;
   const PassTimer timer(tally, Pass::shadows);
   RayPacket rays;
-  frame.kernels.shadow_rays(light, points, frame.offset, rays);
+  frame.kernels.shadow_rays(light, points, rays);
   if (rays.live == 0) return;
   count_rays(tally, Pass::shadows, rays.live);
   const uint64_t blocked = frame.kernels.trace_any(frame.accelerator.view, rays, GlassRule::passes);

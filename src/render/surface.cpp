@@ -37,6 +37,7 @@ void make_surfaces(const Scene& scene, const RayPacket& rays, const HitPacket& h
       p.px[lane] = p.py[lane] = p.pz[lane] = 0;
       p.gx[lane] = p.gy[lane] = p.nx[lane] = p.ny[lane] = 0;
       p.gz[lane] = p.nz[lane] = 1;
+      p.offset[lane] = 0;
       continue;
     }
     p.live |= 1ull << lane;
@@ -54,6 +55,7 @@ void make_surfaces(const Scene& scene, const RayPacket& rays, const HitPacket& h
     p.px[lane] = position.x, p.py[lane] = position.y, p.pz[lane] = position.z;
     p.gx[lane] = geometric.x, p.gy[lane] = geometric.y, p.gz[lane] = geometric.z;
     p.nx[lane] = shading.x, p.ny[lane] = shading.y, p.nz[lane] = shading.z;
+    p.offset[lane] = ray_offset(greatest(largest_component(a), greatest(largest_component(b), largest_component(c))));
     out.vx[lane] = viewer.x, out.vy[lane] = viewer.y, out.vz[lane] = viewer.z;
     out.t[lane] = hits.t[lane];
     out.triangle[lane] = triangle;
