@@ -84,12 +84,18 @@ $(OUT)/flags: FORCE
 	@echo '$(CXX) $(CXXFLAGS_ALL) $(STB_FLAGS) $(LDFLAGS_ALL) $(foreach isa,$(ISAS),$(ISA_$(isa)))' | cmp -s - $@ || \
 	  echo '$(CXX) $(CXXFLAGS_ALL) $(STB_FLAGS) $(LDFLAGS_ALL) $(foreach isa,$(ISAS),$(ISA_$(isa)))' > $@
 
-$(OUT)/stb: $(OUT)/flags
-	@printf '#include <stb_image.h>\n#include <stb_image_write.h>\n' | $(CXX) $(STB_FLAGS) -fsyntax-only -x c++ - 2>/dev/null || \
-	  { echo 'stb is missing. Install it with:  sudo apt-get install -y libstb-dev'; exit 1; }
+# What the build needs is asked for once, so that what is missing is answered with how to get it.
+$(OUT)/compiler: $(OUT)/flags
+	@$(CXX) -std=c++20 -fsyntax-only -x c++ /dev/null || \
+	  { echo 'The compiler $(CXX) does not run, or not as C++20. Install one with:  sudo apt-get install -y g++'; exit 1; }
 	@touch $@
 
-$(OUT)/gtest: $(OUT)/flags
+$(OUT)/stb: $(OUT)/compiler
+	@printf '#include <stb_image.h>\n#include <stb_image_write.h>\n' | $(CXX) $(STB_FLAGS) -fsyntax-only -x c++ - 2>/dev/null || \
+	  { echo '$(if $(STB_INCLUDE),There are no stb_image.h and stb_image_write.h in STB_INCLUDE=$(STB_INCLUDE).,stb is missing. Install it with:  sudo apt-get install -y libstb-dev)'; exit 1; }
+	@touch $@
+
+$(OUT)/gtest: $(OUT)/compiler
 	@printf '#include <gtest/gtest.h>\nint main() {}\n' | $(CXX) -std=c++20 -pthread -x c++ - -lgtest -o $@.try 2>/dev/null || \
 	  { echo 'GoogleTest is missing. Install it with:  sudo apt-get install -y libgtest-dev'; exit 1; }
 	@rm -f $@.try && touch $@
@@ -99,7 +105,7 @@ $(OUT)/obj/%.o: src/%.cpp $(OUT)/flags $(OUT)/stb
 	$(CXX) $(CXXFLAGS_ALL) $(STB_FLAGS) -DVITRAL_ISAS='$(ISAS)' -c $< -o $@
 
 define kernel_rule
-$(OUT)/obj/kernels/$(1)/%.o: src/kernels/%.cpp $(OUT)/flags
+$(OUT)/obj/kernels/$(1)/%.o: src/kernels/%.cpp $(OUT)/flags $(OUT)/compiler
 	@mkdir -p $$(@D)
 	$$(CXX) $$(CXXFLAGS_ALL) $$(ISA_$(1)) -DVITRAL_ISA=$(1) -c $$< -o $$@
 endef

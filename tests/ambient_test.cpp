@@ -13,7 +13,9 @@
 namespace vitral::test {
 namespace {
 
-bool right_half_only(const void*, uint32_t, float u, float v) { return u > v; }
+bool right_half_only(const void*, uint32_t, float u, float v) {
+  return u > v;
+}
 
 // A floor of small squares, steps and walls on it, some of glass, some with holes, and loose bits.
 std::vector<KdTriangle> town(Random& random, const Vec3& at, float scale) {
@@ -24,7 +26,8 @@ std::vector<KdTriangle> town(Random& random, const Vec3& at, float scale) {
     add_triangle(out, p, q + v * scale, r, flags);
   };
   for (int i = 0; i < 10; ++i) {
-    for (int j = 0; j < 10; ++j) quad({static_cast<float>(i), 0, static_cast<float>(j)}, {0, 0, 1}, {1, 0, 0}, 0);
+    for (int j = 0; j < 10; ++j)
+      quad({static_cast<float>(i), 0, static_cast<float>(j)}, {0, 0, 1}, {1, 0, 0}, 0);
   }
   for (int i = 0; i < 12; ++i) {
     const float x = static_cast<float>(random.below(10)), z = static_cast<float>(random.below(10));
@@ -56,21 +59,25 @@ PointPacket points_on(Random& random, const std::vector<KdTriangle>& triangles, 
     p.px[lane] = x.x, p.py[lane] = x.y, p.pz[lane] = x.z;
     p.gx[lane] = g.x, p.gy[lane] = g.y, p.gz[lane] = g.z;
     p.nx[lane] = n.x, p.ny[lane] = n.y, p.nz[lane] = n.z;
-    p.offset[lane] = ray_offset(greatest(largest_component(a), greatest(largest_component(b), largest_component(c))));
+    p.offset[lane] =
+        ray_offset(greatest(largest_component(a), greatest(largest_component(b), largest_component(c))));
     p.key[lane] = random.bits();
   }
   return p;
 }
 
-uint32_t free_rays_one_by_one(const Tree& tree, const PointPacket& p, const AmbientSettings& settings, int lane) {
+uint32_t free_rays_one_by_one(const Tree& tree, const PointPacket& p, const AmbientSettings& settings,
+                              int lane) {
   const Vec3 position{p.px[lane], p.py[lane], p.pz[lane]}, g{p.gx[lane], p.gy[lane], p.gz[lane]};
   const Vec3 n{p.nx[lane], p.ny[lane], p.nz[lane]};
   const float side = 1.0f / static_cast<float>(settings.strata);
   uint32_t free = 0;
   for (int s = 0; s < settings.strata * settings.strata; ++s) {
     const uint32_t h = sample_hash(p.key[lane], static_cast<uint32_t>(s));
-    const float u1 = (static_cast<float>(s % settings.strata) + static_cast<float>(h & 0xffff) * (1.0f / 65536)) * side;
-    const float u2 = (static_cast<float>(s / settings.strata) + static_cast<float>(h >> 16) * (1.0f / 65536)) * side;
+    const float u1 =
+        (static_cast<float>(s % settings.strata) + static_cast<float>(h & 0xffff) * (1.0f / 65536)) * side;
+    const float u2 =
+        (static_cast<float>(s / settings.strata) + static_cast<float>(h >> 16) * (1.0f / 65536)) * side;
     Vec3 d = cosine_hemisphere(n, u1, u2);
     const float below = least(dot(d, g), 0.0f);
     d = d - g * (below + below);
@@ -88,7 +95,8 @@ TEST_P(AmbientOfEveryIsa, EqualsItsRaysOneByOne) {
     float scale;
   };
   uint64_t open = 0, occluded = 0, closed_in = 0;
-  for (const Place& place : {Place{{0, 0, 0}, 1}, Place{{-3e3f, 50, 1e4f}, 1}, Place{{0, 0, 0}, 1e-5f}, Place{{0, 0, 0}, 1e4f}}) {
+  for (const Place& place :
+       {Place{{0, 0, 0}, 1}, Place{{-3e3f, 50, 1e4f}, 1}, Place{{0, 0, 0}, 1e-5f}, Place{{0, 0, 0}, 1e4f}}) {
     Random random(21);
     const Tree tree(town(random, place.at, place.scale), {right_half_only, nullptr});
     for (uint32_t packet = 0; packet < 48; ++packet) {
@@ -100,7 +108,8 @@ TEST_P(AmbientOfEveryIsa, EqualsItsRaysOneByOne) {
       for (int lane = 0; lane < kPacketSize; ++lane) {
         if (!(points.live >> lane & 1)) continue;
         const uint32_t expected = free_rays_one_by_one(tree, points, settings, lane);
-        ASSERT_EQ(free[lane], expected) << GetParam()->isa << " packet " << packet << " lane " << lane << " scale " << place.scale;
+        ASSERT_EQ(free[lane], expected)
+            << GetParam()->isa << " packet " << packet << " lane " << lane << " scale " << place.scale;
         ++(expected == 9 ? open : expected == 0 ? closed_in : occluded);
       }
     }

@@ -103,13 +103,16 @@ TEST_P(Determinism, CropEqualsTheWholeFramesPart) {
   const Scene scene = room();
   Settings s = settings(GetParam());
   const Frame whole = render_scene(scene, kCamera, s);
-  for (const Rectangle& crop : {Rectangle{0, 0, 1, 1}, Rectangle{33, 17, 40, 30}, Rectangle{5, 40, 85, 30}, Rectangle{31, 31, 2, 2}}) {
+  for (const Rectangle& crop : {Rectangle{0, 0, 1, 1}, Rectangle{33, 17, 40, 30}, Rectangle{5, 40, 85, 30},
+                                Rectangle{31, 31, 2, 2}}) {
     s.crop = crop;
     const Frame part = render_scene(scene, kCamera, s);
     ASSERT_EQ(part.radiance.width, crop.width);
     ASSERT_EQ(part.radiance.height, crop.height);
     for (int y = 0; y < crop.height; ++y) {
-      ASSERT_EQ(std::memcmp(part.radiance.row(y), whole.radiance.row(crop.y + y) + crop.x, static_cast<size_t>(crop.width) * sizeof(Vec3)), 0)
+      ASSERT_EQ(std::memcmp(part.radiance.row(y), whole.radiance.row(crop.y + y) + crop.x,
+                            static_cast<size_t>(crop.width) * sizeof(Vec3)),
+                0)
           << crop.x << "," << crop.y << " row " << y;
     }
   }
@@ -128,7 +131,9 @@ TEST_P(Determinism, SeedChangesOnlyTheSampling) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Frames, Determinism, testing::Values(Primary::raster, Primary::trace),
-                         [](const auto& i) { return i.param == Primary::raster ? std::string("raster") : std::string("trace"); });
+                         [](const auto& i) {
+                           return i.param == Primary::raster ? std::string("raster") : std::string("trace");
+                         });
 
 TEST(Settings, OutOfRangeIsAUsageError) {
   const Scene scene;

@@ -33,7 +33,9 @@ void add_floor(Scene& scene, uint32_t material, float half, float y = 0) {
 
 const Camera kFromAbove = camera_at({0, 4, 0}, {0, -1, 0}, 60, {0, 0, -1});
 
-const Vec3& aov(const Frame& frame, size_t which, int x, int y) { return frame.aovs[which].pixels.row(y)[x]; }
+const Vec3& aov(const Frame& frame, size_t which, int x, int y) {
+  return frame.aovs[which].pixels.row(y)[x];
+}
 
 // The pixels of the first auxiliary picture, from above.
 std::vector<Vec3> first_aov(const Scene& scene, const Settings& settings) {
@@ -79,7 +81,8 @@ TEST(Light, PointLightFallsOffWithTheSquare) {
   for (int y = 0; y < 64; ++y) {
     for (int x = 0; x < 64; ++x) {
       const Vec3 p = aov(frame, 0, x, y);
-      const double d2 = static_cast<double>(p.x) * static_cast<double>(p.x) + static_cast<double>(p.z) * static_cast<double>(p.z) + 4;
+      const double d2 = static_cast<double>(p.x) * static_cast<double>(p.x) +
+                        static_cast<double>(p.z) * static_cast<double>(p.z) + 4;
       ASSERT_NEAR(pixel(frame, x, y).x, 2 / (d2 * std::sqrt(d2)), 1e-5);
     }
   }
@@ -183,7 +186,8 @@ TEST(Compositing, ReportDarkensTheFinishedColour) {
   Settings s = small();
   s.effects = only(&Effects::shadows);
   s.compositing = Compositing::report;
-  for (const Vec3& c : render_scene(scene, kFromAbove, s).radiance.pixels) ASSERT_NEAR(c.x, 0.5f * 0.8f, 1e-6);
+  for (const Vec3& c : render_scene(scene, kFromAbove, s).radiance.pixels)
+    ASSERT_NEAR(c.x, 0.5f * 0.8f, 1e-6);
   s.compositing = Compositing::physical;
   for (const Vec3& c : render_scene(scene, kFromAbove, s).radiance.pixels) ASSERT_NEAR(c.x, 0.2f, 1e-6);
 }
@@ -291,7 +295,8 @@ TEST(Reflection, DepthAndImportanceLimits) {
     s.max_depth = depth;
     float expected = 0, weight = 0.01f;
     for (int i = 0; i <= depth; ++i, weight *= 0.5f) expected += weight;
-    for (const Vec3& c : render_scene(scene, narrow, s).radiance.pixels) ASSERT_NEAR(c.x, expected, 1e-7) << depth;
+    for (const Vec3& c : render_scene(scene, narrow, s).radiance.pixels)
+      ASSERT_NEAR(c.x, expected, 1e-7) << depth;
   }
   s.max_depth = 100;
   s.min_importance = 0.2f;  // weights 1/2 and 1/4 are followed, 1/8 is not

@@ -77,7 +77,8 @@ TEST(Srgb, RoundTripsEveryCodeAndIsMonotone) {
   for (int i = 0; i < 256; ++i) {
     EXPECT_EQ(linear_to_srgb8(kLinearOfSrgb[static_cast<size_t>(i)]), i);
     const double s = i / 255.0;
-    EXPECT_NEAR(kLinearOfSrgb[static_cast<size_t>(i)], s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4), 1e-7);
+    EXPECT_NEAR(kLinearOfSrgb[static_cast<size_t>(i)],
+                s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4), 1e-7);
   }
   int last = 0;
   for (int i = 0; i <= 1000000; ++i) {
@@ -102,7 +103,8 @@ TEST(Fresnel, ClosedForms) {
   EXPECT_NEAR(fresnel_schlick(1, 1 / n), 0.04, 1e-6);
   // Brewster's angle, tan = n: p-polarized light is not reflected, s by (cos i^2 - sin i^2)^2.
   const double brewster = std::atan(1.5);
-  const double s = std::pow(std::cos(brewster) * std::cos(brewster) - std::sin(brewster) * std::sin(brewster), 2);
+  const double s =
+      std::pow(std::cos(brewster) * std::cos(brewster) - std::sin(brewster) * std::sin(brewster), 2);
   EXPECT_NEAR(fresnel_exact(static_cast<float>(std::cos(brewster)), 1 / n), 0.5 * s, 1e-6);
   // Grazing incidence and total internal reflection.
   EXPECT_NEAR(fresnel_exact(0, 1 / n), 1, 1e-6);
@@ -139,7 +141,12 @@ TEST(Fresnel, RefractionObeysSnell) {
 }
 
 TEST(Sampling, FrameIsOrthonormalAndStrataKeepTheirMean) {
-  const Vec3 normals[] = {{0, 0, 1}, {0, 0, -1}, {1, 0, 0}, {0, -1, 0}, normalize(Vec3{1, 2, -3}), normalize(Vec3{-1e-4f, 1e-4f, -1})};
+  const Vec3 normals[] = {{0, 0, 1},
+                          {0, 0, -1},
+                          {1, 0, 0},
+                          {0, -1, 0},
+                          normalize(Vec3{1, 2, -3}),
+                          normalize(Vec3{-1e-4f, 1e-4f, -1})};
   for (const Vec3& n : normals) {
     Vec3 t, b;
     tangent_frame(n, t, b);

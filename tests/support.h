@@ -34,11 +34,14 @@ struct Random {
   }
 };
 
-inline void add_triangle(std::vector<KdTriangle>& out, const Vec3& a, const Vec3& b, const Vec3& c, uint32_t flags = 0) {
+inline void add_triangle(std::vector<KdTriangle>& out, const Vec3& a, const Vec3& b, const Vec3& c,
+                         uint32_t flags = 0) {
   out.push_back({{{a.x, a.y, a.z}, {b.x, b.y, b.z}, {c.x, c.y, c.z}}, flags});
 }
 
-inline Vec3 corner_of(const KdTriangle& t, size_t k) { return {t.corner[k][0], t.corner[k][1], t.corner[k][2]}; }
+inline Vec3 corner_of(const KdTriangle& t, size_t k) {
+  return {t.corner[k][0], t.corner[k][1], t.corner[k][2]};
+}
 
 // A tree with its triangles, built on this thread.
 struct Tree {
@@ -67,14 +70,17 @@ inline std::vector<KdTriangle> sphere(const Vec3& center, float radius, int ring
     if (ring == 0) return center + Vec3{0, radius, 0};
     if (ring == rings) return center + Vec3{0, -radius, 0};
     const double theta = pi * ring / rings, phi = 2 * pi * (i % around) / around;
-    return center + Vec3{static_cast<float>(std::sin(theta) * std::cos(phi)), static_cast<float>(std::cos(theta)),
-                         static_cast<float>(std::sin(theta) * std::sin(phi))} * radius;
+    return center + Vec3{static_cast<float>(std::sin(theta) * std::cos(phi)),
+                         static_cast<float>(std::cos(theta)),
+                         static_cast<float>(std::sin(theta) * std::sin(phi))} *
+                        radius;
   };
   std::vector<KdTriangle> out;
   for (int ring = 0; ring < rings; ++ring) {
     for (int i = 0; i < around; ++i) {
       if (ring > 0) add_triangle(out, corner(ring, i), corner(ring, i + 1), corner(ring + 1, i));
-      if (ring < rings - 1) add_triangle(out, corner(ring, i + 1), corner(ring + 1, i + 1), corner(ring + 1, i));
+      if (ring < rings - 1)
+        add_triangle(out, corner(ring, i + 1), corner(ring + 1, i + 1), corner(ring + 1, i));
     }
   }
   return out;
@@ -145,16 +151,21 @@ inline Frame render_scene(const Scene& scene, const Camera& camera, const Settin
   return render(scene, camera, settings, control);
 }
 
-inline const Vec3& pixel(const Frame& frame, int x, int y) { return frame.radiance.row(y)[x]; }
+inline const Vec3& pixel(const Frame& frame, int x, int y) {
+  return frame.radiance.row(y)[x];
+}
 
 inline bool same_bytes(const Frame& a, const Frame& b) {
   return a.radiance.pixels.size() == b.radiance.pixels.size() &&
-         std::memcmp(a.radiance.pixels.data(), b.radiance.pixels.data(), a.radiance.pixels.size() * sizeof(Vec3)) == 0 &&
-         std::memcmp(a.pixels.pixels.data(), b.pixels.pixels.data(), a.pixels.pixels.size() * sizeof(Rgb8)) == 0;
+         std::memcmp(a.radiance.pixels.data(), b.radiance.pixels.data(),
+                     a.radiance.pixels.size() * sizeof(Vec3)) == 0 &&
+         std::memcmp(a.pixels.pixels.data(), b.pixels.pixels.data(), a.pixels.pixels.size() * sizeof(Rgb8)) ==
+             0;
 }
 
 inline bool same_bits(const Hit& a, const Hit& b) {
-  return as_bits(a.t) == as_bits(b.t) && as_bits(a.u) == as_bits(b.u) && as_bits(a.v) == as_bits(b.v) && a.triangle == b.triangle;
+  return as_bits(a.t) == as_bits(b.t) && as_bits(a.u) == as_bits(b.u) && as_bits(a.v) == as_bits(b.v) &&
+         a.triangle == b.triangle;
 }
 
 }  // namespace vitral::test

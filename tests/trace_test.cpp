@@ -18,18 +18,41 @@ Ray nasty_ray(Random& random, const std::vector<KdTriangle>& triangles, uint32_t
   const Vec3 axes[6] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
   Ray r{random.in_box(-3, 3), 0, random.direction(), kInfinity};
   switch (kind % 12) {
-    case 0: break;                                                             // anything
-    case 1: r.direction = a - r.origin; break;                                 // through a corner
-    case 2: r.direction = (a + b) * 0.5f - r.origin; break;                    // through an edge
-    case 3: r.direction = (a + b + c) * (1.0f / 3) - r.origin; break;          // through the middle
-    case 4: r.direction = axes[random.below(6)]; break;                        // along an axis
-    case 5: r.direction = axes[random.below(6)], r.origin = a - r.direction * 4; break;  // along an axis, through a corner
-    case 6: r.origin = a, r.direction = normalize(b - a); break;               // from a corner along an edge
-    case 7: r.origin = a * 2 - b, r.direction = b - a; break;                  // in the plane, along an edge
-    case 8: r.origin = (a + b + c) * (1.0f / 3); break;                        // from inside a triangle
-    case 9: r.direction = random.direction() * random.between(0.001f, 1000); break;      // any length
-    case 10: r.origin = r.origin * 1000, r.direction = a - r.origin; break;    // from far away
-    case 11: r.direction.x = 0, r.tmax = random.between(0, 3); break;          // in an axis plane, bounded
+    case 0:
+      break;  // anything
+    case 1:
+      r.direction = a - r.origin;
+      break;  // through a corner
+    case 2:
+      r.direction = (a + b) * 0.5f - r.origin;
+      break;  // through an edge
+    case 3:
+      r.direction = (a + b + c) * (1.0f / 3) - r.origin;
+      break;  // through the middle
+    case 4:
+      r.direction = axes[random.below(6)];
+      break;  // along an axis
+    case 5:
+      r.direction = axes[random.below(6)], r.origin = a - r.direction * 4;
+      break;  // along an axis, through a corner
+    case 6:
+      r.origin = a, r.direction = normalize(b - a);
+      break;  // from a corner along an edge
+    case 7:
+      r.origin = a * 2 - b, r.direction = b - a;
+      break;  // in the plane, along an edge
+    case 8:
+      r.origin = (a + b + c) * (1.0f / 3);
+      break;  // from inside a triangle
+    case 9:
+      r.direction = random.direction() * random.between(0.001f, 1000);
+      break;  // any length
+    case 10:
+      r.origin = r.origin * 1000, r.direction = a - r.origin;
+      break;  // from far away
+    case 11:
+      r.direction.x = 0, r.tmax = random.between(0, 3);
+      break;  // in an axis plane, bounded
   }
   return r;
 }
@@ -38,14 +61,18 @@ std::vector<KdTriangle> scene(int which) {
   Random random(static_cast<uint32_t>(which) + 100);
   std::vector<KdTriangle> out;
   switch (which) {
-    case 0: return soup(random, 300, 0.3f);
-    case 1: return sphere({0.1f, -0.2f, 0.3f}, 1, 10);
+    case 0:
+      return soup(random, 300, 0.3f);
+    case 1:
+      return sphere({0.1f, -0.2f, 0.3f}, 1, 10);
     case 2:  // a city of boxes' faces on a lattice: planes and triangles coincide everywhere
       for (int i = 0; i < 200; ++i) {
-        const float x = static_cast<float>(random.below(8)) * 0.25f - 1, y = static_cast<float>(random.below(8)) * 0.25f - 1;
+        const float x = static_cast<float>(random.below(8)) * 0.25f - 1,
+                    y = static_cast<float>(random.below(8)) * 0.25f - 1;
         const float z = static_cast<float>(random.below(8)) * 0.25f - 1;
         const int flat = static_cast<int>(random.below(3));
-        const Vec3 u = flat == 0 ? Vec3{0, 0.25f, 0} : Vec3{0.25f, 0, 0}, v = flat == 2 ? Vec3{0, 0.25f, 0} : Vec3{0, 0, 0.25f};
+        const Vec3 u = flat == 0 ? Vec3{0, 0.25f, 0} : Vec3{0.25f, 0, 0},
+                   v = flat == 2 ? Vec3{0, 0.25f, 0} : Vec3{0, 0, 0.25f};
         add_triangle(out, {x, y, z}, Vec3{x, y, z} + u, Vec3{x, y, z} + v);
         add_triangle(out, Vec3{x, y, z} + u, Vec3{x, y, z} + u + v, Vec3{x, y, z} + v);
       }
@@ -58,10 +85,14 @@ std::vector<KdTriangle> scene(int which) {
       return out;
     case 4:  // the same triangle many times, and a flat fan in one plane
       for (int i = 0; i < 40; ++i) add_triangle(out, {-1, -1, 0.5f}, {1, -1, 0.5f}, {0, 1, 0.5f});
-      for (int i = 0; i < 40; ++i) add_triangle(out, {0, 0, 0}, random.in_box(-1, 1) * Vec3{1, 1, 0}, random.in_box(-1, 1) * Vec3{1, 1, 0});
+      for (int i = 0; i < 40; ++i)
+        add_triangle(out, {0, 0, 0}, random.in_box(-1, 1) * Vec3{1, 1, 0},
+                     random.in_box(-1, 1) * Vec3{1, 1, 0});
       return out;
-    case 5: return sphere({1.5e5f, -1234, 2e5f}, 300, 8);
-    default: return sphere({0, 0, 0}, 1e-5f, 6);
+    case 5:
+      return sphere({1.5e5f, -1234, 2e5f}, 300, 8);
+    default:
+      return sphere({0, 0, 0}, 1e-5f, 6);
   }
 }
 constexpr int kScenes = 7;
@@ -88,9 +119,11 @@ TEST(Trace, WalkEqualsBruteForce) {
       const Ray ray = ray_for(random, tree, i);
       const Hit brute = brute_force_closest(tree.view, tree.size(), ray, GlassRule::blocks);
       const Hit walk = walk_closest(tree.view, ray);
-      ASSERT_TRUE(same_bits(brute, walk)) << "scene " << which << " ray " << i << ": t " << brute.t << " and " << walk.t
-                                          << ", triangle " << brute.triangle << " and " << walk.triangle;
-      ASSERT_EQ(walk_any(tree.view, ray, GlassRule::blocks), brute.triangle != kNoTriangle) << "scene " << which << " ray " << i;
+      ASSERT_TRUE(same_bits(brute, walk))
+          << "scene " << which << " ray " << i << ": t " << brute.t << " and " << walk.t << ", triangle "
+          << brute.triangle << " and " << walk.triangle;
+      ASSERT_EQ(walk_any(tree.view, ray, GlassRule::blocks), brute.triangle != kNoTriangle)
+          << "scene " << which << " ray " << i;
       hits += brute.triangle != kNoTriangle;
     }
     EXPECT_GT(hits, 600) << "scene " << which;
@@ -122,9 +155,10 @@ TEST_P(EveryIsa, PacketsEqualTheWalk) {
         const bool live = rays.live >> lane & 1;
         const Hit expected = live ? walk_closest(tree.view, ray_of(rays, lane)) : Hit{};
         ASSERT_TRUE(same_bits(expected, hit_of(found, lane)))
-            << kernels.isa << " scene " << which << " packet " << packet << " lane " << lane << ": t " << expected.t << " and "
-            << found.t[lane];
-        ASSERT_EQ(any >> lane & 1, expected.triangle != kNoTriangle) << kernels.isa << " scene " << which << " packet " << packet;
+            << kernels.isa << " scene " << which << " packet " << packet << " lane " << lane << ": t "
+            << expected.t << " and " << found.t[lane];
+        ASSERT_EQ(any >> lane & 1, expected.triangle != kNoTriangle)
+            << kernels.isa << " scene " << which << " packet " << packet;
         hits += expected.triangle != kNoTriangle;
       }
     }
@@ -134,19 +168,23 @@ TEST_P(EveryIsa, PacketsEqualTheWalk) {
 
 // Shadow and ambient rays pass glass; a cut-out texture removes part of a triangle. Both must be the
 // same in all traversals.
-bool left_half_only(const void*, uint32_t, float u, float) { return u < 0.5f; }
+bool left_half_only(const void*, uint32_t, float u, float) {
+  return u < 0.5f;
+}
 
 TEST_P(EveryIsa, GlassAndCutOutsAreTheSame) {
   const Kernels& kernels = *GetParam();
   Random random(5);
   std::vector<KdTriangle> list = soup(random, 200, 0.5f);
-  for (size_t i = 0; i < list.size(); ++i) list[i].flags = i % 3 == 0 ? kGlassTriangle : i % 3 == 1 ? kCutOutTriangle : 0u;
+  for (size_t i = 0; i < list.size(); ++i)
+    list[i].flags = i % 3 == 0 ? kGlassTriangle : i % 3 == 1 ? kCutOutTriangle : 0u;
   const Tree tree(std::move(list), {left_half_only, nullptr});
   int blocked = 0, differs = 0;
   for (uint32_t packet = 0; packet < 60; ++packet) {
     RayPacket rays{};
     rays.live = ~0ull;
-    for (int lane = 0; lane < kPacketSize; ++lane) set_ray(rays, lane, nasty_ray(random, tree.triangles, random.bits()));
+    for (int lane = 0; lane < kPacketSize; ++lane)
+      set_ray(rays, lane, nasty_ray(random, tree.triangles, random.bits()));
     HitPacket found;
     kernels.trace_closest(tree.view, rays, found);
     const uint64_t any = kernels.trace_any(tree.view, rays, GlassRule::passes);
@@ -170,14 +208,20 @@ TEST_P(EveryIsa, RaysThatMakeNoSenseHitNothing) {
   const Tree tree(sphere({0, 0, 0}, 1, 8));
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const Ray bad[] = {
-      {{nan, 0, 0}, 0, {1, 0, 0}, kInfinity},       {{0, 0, 0}, 0, {nan, 0, 1}, kInfinity}, {{kInfinity, 0, 0}, 0, {1, 0, 0}, kInfinity},
-      {{0, 0, 0}, 0, {0, 0, 0}, kInfinity},         {{0, 0, 0}, 0, {1e-40f, 0, 0}, kInfinity}, {{0, 0, 0}, 0, {kInfinity, 1, 0}, kInfinity},
-      {{0, 0, 0}, 0, {1, 0, 0}, nan},               {{0, 0, 0}, 0, {1, 0, 0}, 0},
+      {{nan, 0, 0}, 0, {1, 0, 0}, kInfinity},
+      {{0, 0, 0}, 0, {nan, 0, 1}, kInfinity},
+      {{kInfinity, 0, 0}, 0, {1, 0, 0}, kInfinity},
+      {{0, 0, 0}, 0, {0, 0, 0}, kInfinity},
+      {{0, 0, 0}, 0, {1e-40f, 0, 0}, kInfinity},
+      {{0, 0, 0}, 0, {kInfinity, 1, 0}, kInfinity},
+      {{0, 0, 0}, 0, {1, 0, 0}, nan},
+      {{0, 0, 0}, 0, {1, 0, 0}, 0},
   };
   for (const Ray& ray : bad) {
     RayPacket rays{};
     rays.live = ~0ull;
-    for (int lane = 0; lane < kPacketSize; ++lane) set_ray(rays, lane, lane % 2 ? ray : Ray{{0, 0, 0}, 0, {0, 1, 0.1f}, kInfinity});
+    for (int lane = 0; lane < kPacketSize; ++lane)
+      set_ray(rays, lane, lane % 2 ? ray : Ray{{0, 0, 0}, 0, {0, 1, 0.1f}, kInfinity});
     HitPacket found;
     kernels.trace_closest(tree.view, rays, found);
     const uint64_t any = kernels.trace_any(tree.view, rays, GlassRule::blocks);
@@ -194,7 +238,8 @@ TEST_P(EveryIsa, EmptySceneHasNoHits) {
   RayPacket rays{};
   rays.live = ~0ull;
   Random random(1);
-  for (int lane = 0; lane < kPacketSize; ++lane) set_ray(rays, lane, {random.in_box(-1, 1), 0, random.direction(), kInfinity});
+  for (int lane = 0; lane < kPacketSize; ++lane)
+    set_ray(rays, lane, {random.in_box(-1, 1), 0, random.direction(), kInfinity});
   HitPacket found;
   GetParam()->trace_closest(tree.view, rays, found);
   for (const uint32_t triangle : found.triangle) EXPECT_EQ(triangle, kNoTriangle);
@@ -208,7 +253,11 @@ TEST_P(EveryIsa, ClosedMeshesAreWatertight) {
     float radius;
     int rings;
   };
-  const Case cases[] = {{{0, 0, 0}, 1, 24}, {{1000, -2000, 500}, 1, 12}, {{1.5e5f, -1234, 2e5f}, 50, 12}, {{0, 0, 0}, 1e-6f, 8}, {{0, 0, 0}, 1e6f, 8}};
+  const Case cases[] = {{{0, 0, 0}, 1, 24},
+                        {{1000, -2000, 500}, 1, 12},
+                        {{1.5e5f, -1234, 2e5f}, 50, 12},
+                        {{0, 0, 0}, 1e-6f, 8},
+                        {{0, 0, 0}, 1e6f, 8}};
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || !defined(__OPTIMIZE__)
   const uint32_t packets = 150;
 #else
@@ -228,14 +277,23 @@ TEST_P(EveryIsa, ClosedMeshesAreWatertight) {
         const float s = random.unit();
         Vec3 d = random.direction();
         switch (packet % 5) {
-          case 1: d = a - origin; break;
-          case 2: d = (a * s + b * (1 - s)) - origin; break;
-          case 3: d = lane % 2 ? Vec3{0, lane % 4 == 1 ? 1.0f : -1.0f, 0} : Vec3{1, 0, 0}; break;
-          case 4: d = normalize(a - origin); break;
+          case 1:
+            d = a - origin;
+            break;
+          case 2:
+            d = (a * s + b * (1 - s)) - origin;
+            break;
+          case 3:
+            d = lane % 2 ? Vec3{0, lane % 4 == 1 ? 1.0f : -1.0f, 0} : Vec3{1, 0, 0};
+            break;
+          case 4:
+            d = normalize(a - origin);
+            break;
         }
         set_ray(rays, lane, {packet % 10 == 3 ? c.center : origin, 0, d, kInfinity});
       }
-      misses += static_cast<uint64_t>(64 - __builtin_popcountll(GetParam()->trace_any(tree.view, rays, GlassRule::blocks)));
+      misses += static_cast<uint64_t>(
+          64 - __builtin_popcountll(GetParam()->trace_any(tree.view, rays, GlassRule::blocks)));
       HitPacket found;
       if (packet % 8 == 0) {
         GetParam()->trace_closest(tree.view, rays, found);
@@ -254,15 +312,18 @@ TEST(KdTree, IsTheSameInWhateverOrderItIsBuilt) {
   const std::vector<KdTriangle> triangles = soup(random, 20000, 0.05f);
   std::vector<uint32_t> members(triangles.size());
   for (uint32_t i = 0; i < members.size(); ++i) members[i] = i;
-  const KdTree forward = build_kdtree(triangles, members, {}, [](size_t n, const std::function<void(size_t)>& body) {
-    for (size_t i = 0; i < n; ++i) body(i);
-  });
-  const KdTree backward = build_kdtree(triangles, members, {}, [](size_t n, const std::function<void(size_t)>& body) {
-    for (size_t i = n; i-- > 0;) body(i);
-  });
+  const KdTree forward =
+      build_kdtree(triangles, members, {}, [](size_t n, const std::function<void(size_t)>& body) {
+        for (size_t i = 0; i < n; ++i) body(i);
+      });
+  const KdTree backward =
+      build_kdtree(triangles, members, {}, [](size_t n, const std::function<void(size_t)>& body) {
+        for (size_t i = n; i-- > 0;) body(i);
+      });
   ASSERT_GT(forward.nodes.size(), 1000u);
   ASSERT_EQ(forward.nodes.size(), backward.nodes.size());
-  EXPECT_EQ(std::memcmp(forward.nodes.data(), backward.nodes.data(), forward.nodes.size() * sizeof(KdNode)), 0);
+  EXPECT_EQ(std::memcmp(forward.nodes.data(), backward.nodes.data(), forward.nodes.size() * sizeof(KdNode)),
+            0);
   EXPECT_EQ(forward.references, backward.references);
 }
 
@@ -290,8 +351,10 @@ TEST(KdTree, StaysWithinItsBoundsOnHostileInput) {
   Random random(13);
   std::vector<std::vector<KdTriangle>> hostile(5);
   for (int i = 0; i < 20000; ++i) add_triangle(hostile[0], {0, 0, 0}, {1, 0, 0}, {0, 1, 0});  // all the same
-  for (int i = 0; i < 3000; ++i) add_triangle(hostile[1], random.in_box(-1, 1), random.in_box(-1, 1), random.in_box(-1, 1));  // all overlap
-  for (int i = 0; i < 3000; ++i) {  // all in one plane
+  for (int i = 0; i < 3000; ++i)
+    add_triangle(hostile[1], random.in_box(-1, 1), random.in_box(-1, 1),
+                 random.in_box(-1, 1));  // all overlap
+  for (int i = 0; i < 3000; ++i) {       // all in one plane
     const Vec3 p = random.in_box(-1, 1) * Vec3{1, 0, 1};
     add_triangle(hostile[2], p, p + Vec3{0.1f, 0, 0}, p + Vec3{0, 0, 0.1f});
   }

@@ -14,10 +14,16 @@ struct Box {
            -std::numeric_limits<float>::infinity()};
 };
 
-static inline float least(float a, float b) { return a < b ? a : b; }
-static inline float greatest(float a, float b) { return a > b ? a : b; }
+static inline float least(float a, float b) {
+  return a < b ? a : b;
+}
+static inline float greatest(float a, float b) {
+  return a > b ? a : b;
+}
 
-static inline bool is_empty(const Box& b) { return !(b.min.x <= b.max.x && b.min.y <= b.max.y && b.min.z <= b.max.z); }
+static inline bool is_empty(const Box& b) {
+  return !(b.min.x <= b.max.x && b.min.y <= b.max.y && b.min.z <= b.max.z);
+}
 
 static inline void extend(Box& b, const Vec3& p) {
   b.min = {least(p.x, b.min.x), least(p.y, b.min.y), least(p.z, b.min.z)};
@@ -27,9 +33,15 @@ static inline void extend(Box& b, const Box& o) {
   extend(b, o.min);
   extend(b, o.max);
 }
-static inline Vec3 extent(const Box& b) { return b.max - b.min; }
-static inline Vec3 center(const Box& b) { return (b.min + b.max) * 0.5f; }
-static inline float diagonal(const Box& b) { return is_empty(b) ? 0.0f : length(extent(b)); }
+static inline Vec3 extent(const Box& b) {
+  return b.max - b.min;
+}
+static inline Vec3 center(const Box& b) {
+  return (b.min + b.max) * 0.5f;
+}
+static inline float diagonal(const Box& b) {
+  return is_empty(b) ? 0.0f : length(extent(b));
+}
 
 // The largest absolute coordinate of the box: the scale of every rounding error inside it.
 static inline float magnitude(const Box& b) {

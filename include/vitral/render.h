@@ -34,23 +34,24 @@ struct Settings {
   int width = 1024, height = 1024;  // 1..kMaxImageSide
   Rectangle crop;                   // empty: the whole frame
   Effects effects;
-  int ao_samples = 16;         // a square number, 1..1024
-  float ao_distance = 0.5f;    // > 0
-  float ao_exponent = 1;       // > 0
-  int max_depth = 5;           // generations of secondary rays, 0..100
+  int ao_samples = 16;            // a square number, 1..1024
+  float ao_distance = 0.5f;       // > 0
+  float ao_exponent = 1;          // > 0
+  int max_depth = 5;              // generations of secondary rays, 0..100
   float min_importance = 0.005f;  // a path is cut when the luminance of its weight falls under this;
                                   // below 1/4096 it counts as 1/4096
   Fresnel fresnel = Fresnel::exact;
   Compositing compositing = Compositing::physical;
   Primary primary = Primary::raster;
   Isa isa = Isa::automatic;
-  int threads = 0;             // 0: one per processor
+  int threads = 0;  // 0: one per processor
   uint32_t seed = 1;
   std::vector<std::string> aovs;  // names out of kAovNames
 };
 
-inline constexpr const char* kAovNames[] = {"position", "normal", "geometric-normal", "depth",     "albedo",    "material",
-                                            "primitive", "shadow", "ao",              "reflection", "refraction"};
+inline constexpr const char* kAovNames[] = {"position", "normal",     "geometric-normal", "depth",
+                                            "albedo",   "material",   "primitive",        "shadow",
+                                            "ao",       "reflection", "refraction"};
 
 // An auxiliary picture: 1 or 3 floats a pixel. Where nothing is seen it holds 0; `material` and
 // `primitive`, which are numbers from 0 on, hold -1.
@@ -72,7 +73,7 @@ struct Stats {
   size_t triangles = 0, dropped_triangles = 0;
   size_t tree_nodes = 0, tree_bytes = 0;
   double build_seconds = 0, frame_seconds = 0;  // wall clock
-  std::vector<PassStats> passes;  // raster, shadows, reflection, refraction, ao, shade, resolve
+  std::vector<PassStats> passes;                // raster, shadows, reflection, refraction, ao, shade, resolve
   uint64_t covered_pixels = 0, not_finite_pixels = 0;
 };
 

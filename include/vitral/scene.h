@@ -20,10 +20,10 @@ using Corners = std::array<uint32_t, 3>;  // one index per corner of a triangle
 // clockwise corners make the front. The loaders drop triangles that are degenerate or not finite.
 struct Mesh {
   std::vector<Vec3> positions;
-  std::vector<Vec3> normals;      // unit length
-  std::vector<Vec2> texcoords;    // v points up: (0, 0) is the image's lower left corner
-  std::vector<Corners> triangles;         // into positions; the index here is the triangle's number
-  std::vector<Corners> triangle_normals;  // into normals; empty: no normals at all; kNoIndex: flat corner
+  std::vector<Vec3> normals;                // unit length
+  std::vector<Vec2> texcoords;              // v points up: (0, 0) is the image's lower left corner
+  std::vector<Corners> triangles;           // into positions; the index here is the triangle's number
+  std::vector<Corners> triangle_normals;    // into normals; empty: no normals at all; kNoIndex: flat corner
   std::vector<Corners> triangle_texcoords;  // into texcoords; empty: none at all; kNoIndex: (0, 0)
   std::vector<uint32_t> triangle_material;  // into Scene::materials, one per triangle
 };
@@ -49,15 +49,15 @@ enum class Optics {
 
 struct Material {
   std::string name;
-  Vec3 diffuse{0.8f, 0.8f, 0.8f};       // Kd
-  Vec3 specular{0, 0, 0};               // Ks
-  Vec3 transmission{1, 1, 1};           // Tf: tint of one sheet, for refraction and for shadows
-  float shininess = 0;                  // Ns; 0: no highlight
-  float index = 1.5f;                   // Ni, index of refraction
-  float opacity = 1;                    // d
+  Vec3 diffuse{0.8f, 0.8f, 0.8f};  // Kd
+  Vec3 specular{0, 0, 0};          // Ks
+  Vec3 transmission{1, 1, 1};      // Tf: tint of one sheet, for refraction and for shadows
+  float shininess = 0;             // Ns; 0: no highlight
+  float index = 1.5f;              // Ni, index of refraction
+  float opacity = 1;               // d
   Optics optics = Optics::opaque;
-  int diffuse_map = kNoTexture;         // map_Kd, into Scene::textures
-  int opacity_map = kNoTexture;         // map_d: cut-out, visible where alpha (or, without one, grey) >= 1/2
+  int diffuse_map = kNoTexture;  // map_Kd, into Scene::textures
+  int opacity_map = kNoTexture;  // map_d: cut-out, visible where alpha (or, without one, grey) >= 1/2
 };
 
 // Glass does not block shadow and ambient rays.
@@ -76,9 +76,9 @@ struct Light {
 struct Camera {
   std::string name;
   Vec3 position{0, 0, 0};
-  Vec3 view{0, 0, -1};  // the way it looks, any length
-  Vec3 up{0, 1, 0};     // any length, not along view
-  float fov = 60;       // vertical, degrees, in (0, 180)
+  Vec3 view{0, 0, -1};            // the way it looks, any length
+  Vec3 up{0, 1, 0};               // any length, not along view
+  float fov = 60;                 // vertical, degrees, in (0, 180)
   float near = 0.1f, far = 1000;  // distances along view
 };
 

@@ -82,8 +82,12 @@ static inline Vec3 to_float(const Vec3d& v) {
 }
 
 // IEEE square root, correctly rounded on every machine. (The SIMD types bring their own.)
-static inline float square_root(float x) { return __builtin_sqrtf(x); }
-static inline double square_root(double x) { return __builtin_sqrt(x); }
+static inline float square_root(float x) {
+  return __builtin_sqrtf(x);
+}
+static inline double square_root(double x) {
+  return __builtin_sqrt(x);
+}
 
 template <class F>
 static inline F length(const Vec3T<F>& v) {
@@ -97,6 +101,8 @@ static inline Vec3T<F> normalize(const Vec3T<F>& v) {
 }
 
 // Relative luminance of linear Rec. 709 / sRGB primaries.
-static inline float luminance(const Vec3& c) { return (0.2126f * c.x + 0.7152f * c.y) + 0.0722f * c.z; }
+static inline float luminance(const Vec3& c) {
+  return (0.2126f * c.x + 0.7152f * c.y) + 0.0722f * c.z;
+}
 
 }  // namespace vitral

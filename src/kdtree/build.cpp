@@ -31,7 +31,9 @@ struct Context {
   int max_depth;
 };
 
-float& component_of(Vec3& v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
+float& component_of(Vec3& v, int axis) {
+  return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
+}
 
 // One ulp further out, for bounds that were rounded to nearest.
 float outward_down(double x) {
@@ -46,7 +48,8 @@ float outward_up(double x) {
 // Cuts a reference in two at the plane. Each part is bounded by the triangle's corners on its side
 // and the points where its edges cross the plane, inside the reference's old bounds. A part that
 // comes out empty by rounding keeps the old bounds on its side: no part of a triangle is ever lost.
-void cut(const Context& context, const Reference& whole, const Plane& plane, Reference& below, Reference& above) {
+void cut(const Context& context, const Reference& whole, const Plane& plane, Reference& below,
+         Reference& above) {
   const KdTriangle& t = context.triangles[whole.triangle];
   Box part[2];
   for (int k = 0; k < 3; ++k) {
@@ -60,7 +63,8 @@ void cut(const Context& context, const Reference& whole, const Plane& plane, Ref
                        (static_cast<double>(bt) - static_cast<double>(at));
       Vec3 low{}, high{};
       for (int axis = 0; axis < 3; ++axis) {
-        const double x = static_cast<double>(a[axis]) + s * (static_cast<double>(b[axis]) - static_cast<double>(a[axis]));
+        const double x =
+            static_cast<double>(a[axis]) + s * (static_cast<double>(b[axis]) - static_cast<double>(a[axis]));
         component_of(low, axis) = axis == plane.axis ? plane.position : outward_down(x);
         component_of(high, axis) = axis == plane.axis ? plane.position : outward_up(x);
       }
@@ -70,8 +74,10 @@ void cut(const Context& context, const Reference& whole, const Plane& plane, Ref
   Reference* out[2] = {&below, &above};
   for (int side = 0; side < 2; ++side) {
     Box kept = whole.box;
-    if (side == 0) component_of(kept.max, plane.axis) = plane.position;
-    else component_of(kept.min, plane.axis) = plane.position;
+    if (side == 0)
+      component_of(kept.max, plane.axis) = plane.position;
+    else
+      component_of(kept.min, plane.axis) = plane.position;
     Box tight;
     for (int axis = 0; axis < 3; ++axis) {
       component_of(tight.min, axis) = greatest(component(part[side].min, axis), component(kept.min, axis));
@@ -81,7 +87,8 @@ void cut(const Context& context, const Reference& whole, const Plane& plane, Ref
   }
 }
 
-bool find_plane(const Context& context, std::span<const Reference> references, const Node& node, Plane& plane) {
+bool find_plane(const Context& context, std::span<const Reference> references, const Node& node,
+                Plane& plane) {
   const size_t n = references.size();
   if (n <= 1 || node.depth >= context.max_depth) return false;
   plane = n > context.settings.binned_above ? best_plane_binned(references, node.cell, context.settings.costs)
@@ -97,7 +104,7 @@ Sides sides_of(const Reference& r, const Plane& plane) {
   if (lo == plane.position && hi == plane.position) {
     return {plane.planar == PlanarSide::below, plane.planar == PlanarSide::above};
   }
-  return {lo < plane.position, hi > plane.position};
+  return {lo<plane.position, hi> plane.position};
 }
 
 // How many references go to each side. A split that would use up more references than the node has to
@@ -105,7 +112,8 @@ Sides sides_of(const Reference& r, const Plane& plane) {
 struct Counts {
   size_t below = 0, above = 0;
 };
-bool count_sides(std::span<const Reference> references, const Node& node, const Plane& plane, Counts& counts) {
+bool count_sides(std::span<const Reference> references, const Node& node, const Plane& plane,
+                 Counts& counts) {
   for (const Reference& r : references) {
     const Sides sides = sides_of(r, plane);
     counts.below += sides.below;
@@ -116,9 +124,11 @@ bool count_sides(std::span<const Reference> references, const Node& node, const 
 }
 
 // The children of a node; what references it has to spare are theirs in proportion to their own.
-void make_children(const Node& node, const Plane& plane, const Counts& counts, size_t references, Node& below, Node& above) {
+void make_children(const Node& node, const Plane& plane, const Counts& counts, size_t references, Node& below,
+                   Node& above) {
   const size_t total = counts.below + counts.above, spare = node.spare - (total - references);
-  below.spare = static_cast<size_t>(static_cast<double>(spare) * static_cast<double>(counts.below) / static_cast<double>(total));
+  below.spare = static_cast<size_t>(static_cast<double>(spare) * static_cast<double>(counts.below) /
+                                    static_cast<double>(total));
   above.spare = spare - below.spare;
   below.cell = above.cell = node.cell;
   component_of(below.cell.max, plane.axis) = plane.position;
@@ -127,7 +137,8 @@ void make_children(const Node& node, const Plane& plane, const Counts& counts, s
 }
 
 KdNode inner_node(const Plane& plane, size_t first_child) {
-  return {as_bits(plane.position), static_cast<uint32_t>(first_child) << 2 | static_cast<uint32_t>(plane.axis)};
+  return {as_bits(plane.position),
+          static_cast<uint32_t>(first_child) << 2 | static_cast<uint32_t>(plane.axis)};
 }
 
 KdNode leaf_node(std::span<const Reference> references, std::vector<uint32_t>& out) {
@@ -145,8 +156,8 @@ struct Subtree {
 
 // Builds everything below a node whose references are the last ones on the stack, from `first` on,
 // and takes them off. The stack is all the memory that a subtree needs while it is built.
-void finish_subtree(const Context& context, const Node& node, size_t first, size_t at, std::vector<Reference>& stack,
-                    Subtree& out) {
+void finish_subtree(const Context& context, const Node& node, size_t first, size_t at,
+                    std::vector<Reference>& stack, Subtree& out) {
   const size_t n = stack.size() - first;
   const std::span<const Reference> references(stack.data() + first, n);
   Plane plane;
@@ -175,7 +186,8 @@ void finish_subtree(const Context& context, const Node& node, size_t first, size
       stack.push_back(r);
     }
   }
-  stack.erase(stack.begin() + static_cast<std::ptrdiff_t>(kept), stack.begin() + static_cast<std::ptrdiff_t>(first + n));
+  stack.erase(stack.begin() + static_cast<std::ptrdiff_t>(kept),
+              stack.begin() + static_cast<std::ptrdiff_t>(first + n));
 
   const size_t pair = out.nodes.size();
   out.nodes.resize(pair + 2);
@@ -202,7 +214,8 @@ bool split_upper(const Context& context, Upper& upper) {
   }
   upper.below = std::make_unique<Upper>();
   upper.above = std::make_unique<Upper>();
-  make_children(upper.node, upper.plane, counts, upper.references.size(), upper.below->node, upper.above->node);
+  make_children(upper.node, upper.plane, counts, upper.references.size(), upper.below->node,
+                upper.above->node);
   std::vector<Reference>&below = upper.below->references, &above = upper.above->references;
   below.reserve(counts.below);
   above.reserve(counts.above);
@@ -223,7 +236,8 @@ bool split_upper(const Context& context, Upper& upper) {
 
 void decide(const Context& context, Upper& upper) {
   if (upper.references.size() > context.settings.subtree_at_most) {
-    if (!split_upper(context, upper)) upper.subtree.nodes.push_back(leaf_node(upper.references, upper.subtree.references));
+    if (!split_upper(context, upper))
+      upper.subtree.nodes.push_back(leaf_node(upper.references, upper.subtree.references));
     return;
   }
   upper.subtree.nodes.resize(1);
@@ -251,10 +265,13 @@ void join(Upper& upper, size_t at, KdTree& tree) {
   for (size_t i = 0; i < nodes.size(); ++i) {
     KdNode n = nodes[i];
     n.axis_and_index += (is_leaf(n) ? reference_shift : node_shift) << 2;
-    if (i == 0) tree.nodes[at] = n;
-    else tree.nodes.push_back(n);
+    if (i == 0)
+      tree.nodes[at] = n;
+    else
+      tree.nodes.push_back(n);
   }
-  tree.references.insert(tree.references.end(), upper.subtree.references.begin(), upper.subtree.references.end());
+  tree.references.insert(tree.references.end(), upper.subtree.references.begin(),
+                         upper.subtree.references.end());
 }
 
 // How many nodes and references there are in all, so that the tree is allocated once.
@@ -308,7 +325,8 @@ KdTree build_kdtree(const std::vector<KdTriangle>& triangles, const std::vector<
 }
 
 KdView make_view(const KdTree& tree, const std::vector<KdTriangle>& triangles, const CutOuts& cut_outs) {
-  return {tree.nodes.data(), tree.references.data(), triangles.data(), tree.bounds, magnitude(tree.bounds), cut_outs};
+  return {tree.nodes.data(), tree.references.data(), triangles.data(),
+          tree.bounds,       magnitude(tree.bounds), cut_outs};
 }
 
 }  // namespace vitral

@@ -10,8 +10,8 @@ namespace vitral {
 
 struct BuildSettings {
   SahCosts costs;
-  size_t binned_above = 24;      // references in a node above which planes are binned
-  size_t subtree_at_most = 4096; // nodes with more references are split one by one, smaller ones as one task
+  size_t binned_above = 24;       // references in a node above which planes are binned
+  size_t subtree_at_most = 4096;  // nodes with more references are split one by one, smaller ones as one task
 };
 
 // Runs body(i) for every i in [0, count), in any order and on any threads.

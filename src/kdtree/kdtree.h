@@ -21,11 +21,21 @@ struct KdNode {
   uint32_t axis_and_index;  // bits 0-1: axis, or 3 for a leaf; bits 2-31: child or first reference
 };
 
-static inline bool is_leaf(const KdNode& n) { return (n.axis_and_index & 3u) == 3u; }
-static inline int axis(const KdNode& n) { return static_cast<int>(n.axis_and_index & 3u); }
-static inline uint32_t child(const KdNode& n) { return n.axis_and_index >> 2; }
-static inline uint32_t first_reference(const KdNode& n) { return n.axis_and_index >> 2; }
-static inline uint32_t count(const KdNode& n) { return n.split_or_count; }
+static inline bool is_leaf(const KdNode& n) {
+  return (n.axis_and_index & 3u) == 3u;
+}
+static inline int axis(const KdNode& n) {
+  return static_cast<int>(n.axis_and_index & 3u);
+}
+static inline uint32_t child(const KdNode& n) {
+  return n.axis_and_index >> 2;
+}
+static inline uint32_t first_reference(const KdNode& n) {
+  return n.axis_and_index >> 2;
+}
+static inline uint32_t count(const KdNode& n) {
+  return n.split_or_count;
+}
 static inline float split(const KdNode& n) {
   float s;
   std::memcpy(&s, &n.split_or_count, sizeof s);

@@ -31,7 +31,8 @@ void consider(const CellArea& area, int axis, float position, size_t below, size
   for (const PlanarSide side : {PlanarSide::below, PlanarSide::above}) {
     const size_t b = below + (side == PlanarSide::below ? planar : 0);
     const size_t a = above + (side == PlanarSide::above ? planar : 0);
-    const float work = (area_below * static_cast<float>(b) + area_above * static_cast<float>(a)) * area.inverse;
+    const float work =
+        (area_below * static_cast<float>(b) + area_above * static_cast<float>(a)) * area.inverse;
     const float bonus = a == 0 || b == 0 ? costs.empty_bonus : 1.0f;
     const float cost = bonus * (costs.traversal + costs.intersection * work);
     if (cost < best.cost) best = {cost, position, axis, side};
@@ -113,7 +114,8 @@ Plane best_plane_binned(std::span<const Reference> references, const Box& cell, 
     const CellArea area = cell_area(cell, axis);
     size_t below = 0, above = references.size();
     for (int i = 0; i <= kBins; ++i) {
-      const float position = i == kBins ? component(tight.max, axis) : lower[axis] + static_cast<float>(i) / scale[axis];
+      const float position =
+          i == kBins ? component(tight.max, axis) : lower[axis] + static_cast<float>(i) / scale[axis];
       consider(area, axis, position, below, above, 0, costs, best);
       if (i < kBins) {
         below += starts[a][static_cast<size_t>(i)];

@@ -29,7 +29,7 @@ struct SahCosts {
 enum class PlanarSide { below, above };
 
 struct Plane {
-  float cost;      // +inf: no plane is worth it
+  float cost;  // +inf: no plane is worth it
   float position;
   int axis;
   PlanarSide planar;

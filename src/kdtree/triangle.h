@@ -114,7 +114,8 @@ static inline TriangleHit<F, bool> nearby_point(const Vec3T<F>& a, const Vec3T<F
   u = u * scale;
   v = v * scale;
 
-  const D ta = widen(a.z) / widen(shear.z), tb = widen(b.z) / widen(shear.z), tc = widen(c.z) / widen(shear.z);
+  const D ta = widen(a.z) / widen(shear.z), tb = widen(b.z) / widen(shear.z),
+          tc = widen(c.z) / widen(shear.z);
   D t = (((one - u) - v) * ta + u * tb) + v * tc;
   const auto behind = t <= zero;
   const auto b_is_farthest = both(tb > ta, tb >= tc), c_is_farthest = both(tc > ta, tc > tb);

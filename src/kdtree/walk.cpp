@@ -33,7 +33,8 @@ Interval clip_to_bounds(const KdView& tree, const Ray& ray, const Vec3& reciproc
 }
 
 // Does the ray meet the triangle inside (tmin, tmax), and closer than `hit`? Then `hit` becomes it.
-bool test_triangle(const KdView& tree, const Ray& ray, int z_axis, const Shear<float>& shear, uint32_t id, Hit& hit) {
+bool test_triangle(const KdView& tree, const Ray& ray, int z_axis, const Shear<float>& shear, uint32_t id,
+                   Hit& hit) {
   const KdTriangle& triangle = tree.triangles[id];
   Vec3 corner[3];
   for (int k = 0; k < 3; ++k) {
@@ -44,7 +45,9 @@ bool test_triangle(const KdView& tree, const Ray& ray, int z_axis, const Shear<f
   const auto found = surround_origin(corner[0], corner[1], corner[2], shear);
   if (!found.hit || !(found.t > ray.tmin && found.t < ray.tmax)) return false;
   if (!(found.t < hit.t || (found.t == hit.t && id < hit.triangle))) return false;
-  if ((triangle.flags & kCutOutTriangle) && !tree.cut_outs.is_there(tree.cut_outs.scene, id, found.u, found.v)) return false;
+  if ((triangle.flags & kCutOutTriangle) &&
+      !tree.cut_outs.is_there(tree.cut_outs.scene, id, found.u, found.v))
+    return false;
   hit = {found.t, found.u, found.v, id};
   return true;
 }
@@ -53,7 +56,8 @@ template <Query query>
 Hit walk(const KdView& tree, const Ray& ray, GlassRule glass) {
   Hit best;
   if (!is_traceable(ray.origin, ray.direction)) return best;
-  const Vec3 reciprocal{safe_reciprocal(ray.direction.x), safe_reciprocal(ray.direction.y), safe_reciprocal(ray.direction.z)};
+  const Vec3 reciprocal{safe_reciprocal(ray.direction.x), safe_reciprocal(ray.direction.y),
+                        safe_reciprocal(ray.direction.z)};
   const int z_axis = dominant_axis(ray.direction);
   const Shear<float> shear = make_shear(permute(ray.direction, z_axis));
   const float slack = traversal_slack(greatest(tree.magnitude, largest_component(ray.origin)));
@@ -105,7 +109,9 @@ Hit walk(const KdView& tree, const Ray& ray, GlassRule glass) {
 
 }  // namespace
 
-Hit walk_closest(const KdView& tree, const Ray& ray) { return walk<Query::closest>(tree, ray, GlassRule::blocks); }
+Hit walk_closest(const KdView& tree, const Ray& ray) {
+  return walk<Query::closest>(tree, ray, GlassRule::blocks);
+}
 
 bool walk_any(const KdView& tree, const Ray& ray, GlassRule glass) {
   return walk<Query::any>(tree, ray, glass).triangle != kNoTriangle;

@@ -47,14 +47,16 @@ float magnitude_of(const KdTriangle& t) {
 // directions that are some ulps below the plane, and hits that are computed off their triangle: by
 // less than 2^-20 of the largest coordinate that goes in.
 uint64_t lanes_above(const KdTriangle& t, const PointPacket& points, const Reach& reach) {
-  const float margin = (vitral::greatest(magnitude_of(t), reach.magnitude) + reach.distance) * (1.0f / 1048576);
+  const float margin =
+      (vitral::greatest(magnitude_of(t), reach.magnitude) + reach.distance) * (1.0f / 1048576);
   uint64_t above = 0;
   for (int g = 0; g < kPacketSize; g += kLanes) {
     const Vec3T<Float> n{load(points.gx + g), load(points.gy + g), load(points.gz + g)};
     const Vec3T<Float> p{load(points.px + g), load(points.py + g), load(points.pz + g)};
     Float highest = Float(-kInfinity);
     for (const float* c : {t.corner[0], t.corner[1], t.corner[2]}) {
-      highest = greatest(dot(n, Vec3T<Float>{Float(c[0]) - p.x, Float(c[1]) - p.y, Float(c[2]) - p.z}), highest);
+      highest =
+          greatest(dot(n, Vec3T<Float>{Float(c[0]) - p.x, Float(c[1]) - p.y, Float(c[2]) - p.z}), highest);
     }
     above |= static_cast<uint64_t>(bits(highest > load(points.offset + g) - Float(margin))) << g;
   }
@@ -87,7 +89,8 @@ void find_candidates(const KdView& tree, const PointPacket& points, float distan
   uint32_t node = 0;
   while (!is_leaf(tree.nodes[node])) {
     const KdNode& n = tree.nodes[node];
-    const bool below = component(box.min, axis(n)) <= split(n), above = component(box.max, axis(n)) >= split(n);
+    const bool below = component(box.min, axis(n)) <= split(n),
+               above = component(box.max, axis(n)) >= split(n);
     if (below && above) break;
     node = child(n) + (above ? 1u : 0u);
   }
@@ -109,7 +112,8 @@ void find_candidates(const KdView& tree, const PointPacket& points, float distan
       node = stack[--waiting];
       continue;
     }
-    const bool below = component(box.min, axis(n)) <= split(n), above = component(box.max, axis(n)) >= split(n);
+    const bool below = component(box.min, axis(n)) <= split(n),
+               above = component(box.max, axis(n)) >= split(n);
     if (below && above) stack[waiting++] = child(n) + 1;
     node = child(n) + (below ? 0u : 1u);
   }

@@ -15,7 +15,7 @@ namespace VITRAL_ISA {
 inline constexpr int kMaxCandidates = 24;
 
 struct Candidates {
-  int count;  // more than kMaxCandidates: too many, walk from `node` instead
+  int count;      // more than kMaxCandidates: too many, walk from `node` instead
   uint32_t node;  // the deepest node that holds everything
   uint32_t triangle[kMaxCandidates];
   uint64_t lanes[kMaxCandidates];  // the points that may see it

@@ -31,14 +31,15 @@ struct Kernels {
   void (*ambient_occlusion)(const KdView& tree, const PointPacket& points, const AmbientSettings& settings,
                             uint32_t* free_rays);
 
-  // The nearest triangle at every pixel of the tile in that column and row, which must touch the view's window.
+  // The nearest triangle at every pixel of the tile in that column and row, which must touch the view's
+  // window.
   void (*fill_tile)(const RasterView& view, int tile_x, int tile_y, TileVisibility& out);
 
   // Where the camera rays through the block whose corner is (x, y) meet the 64 triangles that
   // fill_tile found there: t is the depth, t, u and v are the tracer's where the ray hits. Pixels
   // without a triangle get the Hit of nothing.
-  void (*intersect_visible)(const Pinhole& camera, const KdTriangle* triangles, int x, int y, const uint32_t* numbers,
-                            HitPacket& hits);
+  void (*intersect_visible)(const Pinhole& camera, const KdTriangle* triangles, int x, int y,
+                            const uint32_t* numbers, HitPacket& hits);
 };
 
 // The table of every instruction set that was built.

@@ -34,7 +34,9 @@ static inline void set_ray(RayPacket& p, int lane, const Ray& r) {
   p.dx[lane] = r.direction.x, p.dy[lane] = r.direction.y, p.dz[lane] = r.direction.z;
   p.tmax[lane] = r.tmax;
 }
-static inline Hit hit_of(const HitPacket& p, int lane) { return {p.t[lane], p.u[lane], p.v[lane], p.triangle[lane]}; }
+static inline Hit hit_of(const HitPacket& p, int lane) {
+  return {p.t[lane], p.u[lane], p.v[lane], p.triangle[lane]};
+}
 static inline void set_hit(HitPacket& p, int lane, const Hit& h) {
   p.t[lane] = h.t, p.u[lane] = h.u, p.v[lane] = h.v, p.triangle[lane] = h.triangle;
 }

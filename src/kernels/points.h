@@ -16,7 +16,9 @@ struct alignas(64) PointPacket {
 // A secondary ray starts this far off the surface along the geometric normal. A position is computed
 // from its triangle's corners, the largest coordinate of which is `magnitude`, with an error of about
 // 2^-22 of that: the offset is well beyond it, and knows nothing of the rest of the scene.
-static inline float ray_offset(float magnitude) { return magnitude * (1.0f / 262144.0f); }
+static inline float ray_offset(float magnitude) {
+  return magnitude * (1.0f / 262144.0f);
+}
 
 struct AmbientSettings {
   int strata;      // n of n x n samples

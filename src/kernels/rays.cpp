@@ -33,7 +33,8 @@ void primary_rays(const Pinhole& camera, int x, int y, RayPacket& rays) {
     const Uint lane = Uint(static_cast<uint32_t>(g)) + lane_numbers();
     const Float px = to_float(Uint(static_cast<uint32_t>(x)) + (lane & Uint(7u)));
     const Float py = to_float(Uint(static_cast<uint32_t>(y)) + (lane >> 3));
-    store3(rays.ox, rays.oy, rays.oz, g, {Float(camera.origin.x), Float(camera.origin.y), Float(camera.origin.z)});
+    store3(rays.ox, rays.oy, rays.oz, g,
+           {Float(camera.origin.x), Float(camera.origin.y), Float(camera.origin.z)});
     store3(rays.dx, rays.dy, rays.dz, g, primary_direction(camera, px, py));
     store(rays.tmax + g, Float(camera.far));
   }
@@ -81,7 +82,8 @@ void ambient_occlusion(const KdView& tree, const PointPacket& points, const Ambi
   }
   const Float side = Float(1.0f / static_cast<float>(settings.strata)), unit = Float(1.0f / 65536);
   for (int s = 0; s < settings.strata * settings.strata; ++s) {
-    const Float sx = Float(static_cast<float>(s % settings.strata)), sy = Float(static_cast<float>(s / settings.strata));
+    const Float sx = Float(static_cast<float>(s % settings.strata)),
+                sy = Float(static_cast<float>(s / settings.strata));
     for (int g = 0; g < kPacketSize; g += kLanes) {
       const Uint h = sample_hash(load(points.key + g), static_cast<uint32_t>(s));
       const Float u1 = (sx + to_float(h & Uint(0xffffu)) * unit) * side;

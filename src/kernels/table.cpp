@@ -9,7 +9,7 @@ namespace vitral {
 namespace VITRAL_ISA {
 
 const Kernels kTable = {
-    VITRAL_NAME(VITRAL_ISA), kLanes,    primary_rays,     trace_closest, trace_any, shadow_rays,
+    VITRAL_NAME(VITRAL_ISA), kLanes,    primary_rays,      trace_closest, trace_any, shadow_rays,
     ambient_occlusion,       fill_tile, intersect_visible,
 };
 

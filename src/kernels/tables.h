@@ -12,8 +12,8 @@ void shadow_rays(const Light& light, const PointPacket& points, RayPacket& rays)
 void ambient_occlusion(const KdView& tree, const PointPacket& points, const AmbientSettings& settings,
                        uint32_t* free_rays);
 void fill_tile(const RasterView& view, int tile_x, int tile_y, TileVisibility& out);
-void intersect_visible(const Pinhole& camera, const KdTriangle* triangles, int x, int y, const uint32_t* numbers,
-                       HitPacket& hits);
+void intersect_visible(const Pinhole& camera, const KdTriangle* triangles, int x, int y,
+                       const uint32_t* numbers, HitPacket& hits);
 
 }  // namespace VITRAL_ISA
 }  // namespace vitral

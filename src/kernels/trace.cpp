@@ -8,8 +8,8 @@
 // Every ray's answer is a function of the ray and the triangles alone: the same bits as walk.cpp.
 #include "kdtree/kdtree.h"
 #include "kdtree/triangle.h"
-#include "kernels/packet.h"
 #include "kernels/candidates.h"
+#include "kernels/packet.h"
 #include "kernels/tables.h"
 #include "simd/simd.h"
 
@@ -30,7 +30,9 @@ struct alignas(64) Derived {
   float slack;
 };
 
-inline Mask group_mask(uint64_t lanes, int g) { return mask_of_bits(lanes >> g); }
+inline Mask group_mask(uint64_t lanes, int g) {
+  return mask_of_bits(lanes >> g);
+}
 inline bool group_empty(uint64_t lanes, int g) {
   constexpr uint64_t all = kLanes == 64 ? ~0ull : (1ull << kLanes) - 1;
   return ((lanes >> g) & all) == 0;
@@ -106,8 +108,10 @@ inline Vec3T<Float> relative_corner(const float* c, const Viewer& v, int g) {
   return {Float(c[v.kx]) - load(v.ox + g), Float(c[v.ky]) - load(v.oy + g), Float(c[v.kz]) - load(v.oz + g)};
 }
 inline Vec3T<Float> relative_corner(const float* c, const RayPacket& p, int g, Mask is_x, Mask is_y) {
-  const Float x = Float(c[0]) - load(p.ox + g), y = Float(c[1]) - load(p.oy + g), z = Float(c[2]) - load(p.oz + g);
-  return {select(is_x, y, select(is_y, z, x)), select(is_x, z, select(is_y, x, y)), select(is_x, x, select(is_y, y, z))};
+  const Float x = Float(c[0]) - load(p.ox + g), y = Float(c[1]) - load(p.oy + g),
+              z = Float(c[2]) - load(p.oz + g);
+  return {select(is_x, y, select(is_y, z, x)), select(is_x, z, select(is_y, x, y)),
+          select(is_x, x, select(is_y, y, z))};
 }
 
 // Clears the lanes of `hit` where a cut-out triangle is not there.
@@ -115,7 +119,8 @@ uint64_t keep_visible(const KdView& tree, uint32_t id, uint64_t hit, const Float
   alignas(64) float us[kLanes], vs[kLanes];
   store(us, u), store(vs, v);
   for (int lane = 0; lane < kLanes; ++lane) {
-    if ((hit >> lane & 1) && !tree.cut_outs.is_there(tree.cut_outs.scene, id, us[lane], vs[lane])) hit &= ~(1ull << lane);
+    if ((hit >> lane & 1) && !tree.cut_outs.is_there(tree.cut_outs.scene, id, us[lane], vs[lane]))
+      hit &= ~(1ull << lane);
   }
   return hit;
 }
@@ -134,7 +139,9 @@ uint64_t test_triangle(const KdView& tree, const RayPacket& rays, const Derived&
       if constexpr (same_axis) {
         corner[k] = project(relative_corner(triangle.corner[k], viewer, g), shear);
       } else {
-        corner[k] = project(relative_corner(triangle.corner[k], rays, g, group_mask(d.z_is[0], g), group_mask(d.z_is[1], g)), shear);
+        corner[k] = project(
+            relative_corner(triangle.corner[k], rays, g, group_mask(d.z_is[0], g), group_mask(d.z_is[1], g)),
+            shear);
       }
     }
     const Mask maybe = both(may_surround_origin(corner[0], corner[1], corner[2]), group_mask(lanes, g));
@@ -147,7 +154,8 @@ uint64_t test_triangle(const KdView& tree, const RayPacket& rays, const Derived&
       hit = both(hit, either(found.t < best, both(found.t == best, Uint(id) < load(hits->triangle + g))));
     }
     uint64_t hit_bits = bits(hit);
-    if (hit_bits != 0 && (triangle.flags & kCutOutTriangle)) hit_bits = keep_visible(tree, id, hit_bits, found.u, found.v);
+    if (hit_bits != 0 && (triangle.flags & kCutOutTriangle))
+      hit_bits = keep_visible(tree, id, hit_bits, found.u, found.v);
     if (hit_bits == 0) continue;
     met |= hit_bits << g;
     if constexpr (query == Query::closest) {
@@ -196,8 +204,8 @@ struct alignas(64) Waiting {
 };
 
 // Cuts the intervals at the plane: the near part stays in `now`, the far part goes to `w`.
-inline void cut_intervals(uint64_t lanes, float split, const float* origin, const float* reciprocal, float slack,
-                          Intervals& now, Waiting& w) {
+inline void cut_intervals(uint64_t lanes, float split, const float* origin, const float* reciprocal,
+                          float slack, Intervals& now, Waiting& w) {
   for (int g = 0; g < kPacketSize; g += kLanes) {
     if (group_empty(lanes, g)) continue;
     const Float r = load(reciprocal + g);
@@ -224,8 +232,8 @@ inline bool find_viewer(const RayPacket& rays, const Derived& d, uint64_t lanes,
 // Walks the tree from `node` with `lanes`, whose directions all have the signs of bit 0-2 of `octant` (set:
 // negative). Returns the lanes that met something.
 template <Query query>
-uint64_t walk_octant(const KdView& tree, const RayPacket& rays, const Derived& d, uint64_t lanes, int octant, uint32_t node,
-                     GlassRule glass, HitPacket* hits) {
+uint64_t walk_octant(const KdView& tree, const RayPacket& rays, const Derived& d, uint64_t lanes, int octant,
+                     uint32_t node, GlassRule glass, HitPacket* hits) {
   const float* origin[3] = {rays.ox, rays.oy, rays.oz};
   const float* reciprocal[3] = {d.rx, d.ry, d.rz};
   Viewer viewer;
@@ -266,7 +274,7 @@ uint64_t walk_octant(const KdView& tree, const RayPacket& rays, const Derived& d
       const uint32_t id = tree.references[first_reference(leaf) + i];
       if (glass == GlassRule::passes && (tree.triangles[id].flags & kGlassTriangle)) continue;
       const uint64_t here = same_axis ? test_triangle<query, true>(tree, rays, d, viewer, lanes, id, hits)
-                                     : test_triangle<query, false>(tree, rays, d, viewer, lanes, id, hits);
+                                      : test_triangle<query, false>(tree, rays, d, viewer, lanes, id, hits);
       met |= here;
       if constexpr (query == Query::any) lanes &= ~here;
     }

@@ -30,7 +30,8 @@ static inline void sin_cos_turn(const F& u, F& sine, F& cosine) {
 static inline double tangent(double x) {
   const double a = x / 8, a2 = a * a;
   double s = a * (1 + a2 * (-1.0 / 6 + a2 * (1.0 / 120 + a2 * (-1.0 / 5040 + a2 * (1.0 / 362880)))));
-  double c = 1 + a2 * (-1.0 / 2 + a2 * (1.0 / 24 + a2 * (-1.0 / 720 + a2 * (1.0 / 40320 + a2 * (-1.0 / 3628800)))));
+  double c =
+      1 + a2 * (-1.0 / 2 + a2 * (1.0 / 24 + a2 * (-1.0 / 720 + a2 * (1.0 / 40320 + a2 * (-1.0 / 3628800)))));
   for (int i = 0; i < 3; ++i) {
     const double s2 = 2 * s * c;
     c = c * c - s * s;

@@ -8,11 +8,15 @@
 namespace vitral {
 
 // The mirror direction of unit `d` about unit `n`; dot(d, n) may have either sign.
-static inline Vec3 reflect(const Vec3& d, const Vec3& n) { return d - n * (2 * dot(d, n)); }
+static inline Vec3 reflect(const Vec3& d, const Vec3& n) {
+  return d - n * (2 * dot(d, n));
+}
 
 // 1 - eta^2 (1 - cos_i^2): the squared cosine of the refracted ray (Snell's law); negative at total
 // internal reflection.
-static inline float refracted_cosine_squared(float cos_i, float eta) { return 1 - eta * eta * (1 - cos_i * cos_i); }
+static inline float refracted_cosine_squared(float cos_i, float eta) {
+  return 1 - eta * eta * (1 - cos_i * cos_i);
+}
 
 // The refracted direction of unit `d` that meets unit `n` with dot(d, n) = -cos_i < 0.
 static inline Vec3 refract(const Vec3& d, const Vec3& n, float eta, float cos_i, float cos_t) {
@@ -48,9 +52,12 @@ static inline float fresnel_report(float cos_i, float eta) {
 
 static inline float fresnel(Fresnel model, float cos_i, float eta) {
   switch (model) {
-    case Fresnel::schlick: return fresnel_schlick(cos_i, eta);
-    case Fresnel::report: return fresnel_report(cos_i, eta);
-    case Fresnel::exact: break;
+    case Fresnel::schlick:
+      return fresnel_schlick(cos_i, eta);
+    case Fresnel::report:
+      return fresnel_report(cos_i, eta);
+    case Fresnel::exact:
+      break;
   }
   return fresnel_exact(cos_i, eta);
 }

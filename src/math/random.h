@@ -21,7 +21,9 @@ static inline U hash32(U x) {
 static inline uint32_t pixel_key(int x, int y, uint32_t seed) {
   return hash32(hash32(hash32(seed) + static_cast<uint32_t>(x)) + static_cast<uint32_t>(y));
 }
-static inline uint32_t branch_key(uint32_t key, uint32_t branch) { return hash32(key ^ (branch * 0x9e3779b9u)); }
+static inline uint32_t branch_key(uint32_t key, uint32_t branch) {
+  return hash32(key ^ (branch * 0x9e3779b9u));
+}
 template <class U>
 static inline U sample_hash(const U& key, uint32_t sample) {
   return hash32(key + U(sample * 0x9e3779b9u));

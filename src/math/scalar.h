@@ -9,28 +9,60 @@
 
 namespace vitral {
 
-static inline float select(bool mask, float yes, float no) { return mask ? yes : no; }
-static inline double select(bool mask, double yes, double no) { return mask ? yes : no; }
-static inline int32_t select(bool mask, int32_t yes, int32_t no) { return mask ? yes : no; }
-static inline uint32_t select(bool mask, uint32_t yes, uint32_t no) { return mask ? yes : no; }
+static inline float select(bool mask, float yes, float no) {
+  return mask ? yes : no;
+}
+static inline double select(bool mask, double yes, double no) {
+  return mask ? yes : no;
+}
+static inline int32_t select(bool mask, int32_t yes, int32_t no) {
+  return mask ? yes : no;
+}
+static inline uint32_t select(bool mask, uint32_t yes, uint32_t no) {
+  return mask ? yes : no;
+}
 
-static inline bool any(bool mask) { return mask; }
-static inline bool both(bool a, bool b) { return a && b; }
-static inline bool either(bool a, bool b) { return a || b; }
-static inline bool invert(bool a) { return !a; }
+static inline bool any(bool mask) {
+  return mask;
+}
+static inline bool both(bool a, bool b) {
+  return a && b;
+}
+static inline bool either(bool a, bool b) {
+  return a || b;
+}
+static inline bool invert(bool a) {
+  return !a;
+}
 
-static inline double widen(float x) { return static_cast<double>(x); }
-static inline float narrow(double x) { return static_cast<float>(x); }
+static inline double widen(float x) {
+  return static_cast<double>(x);
+}
+static inline float narrow(double x) {
+  return static_cast<float>(x);
+}
 
-static inline float absolute(float x) { return __builtin_fabsf(x); }
-static inline double absolute(double x) { return __builtin_fabs(x); }
+static inline float absolute(float x) {
+  return __builtin_fabsf(x);
+}
+static inline double absolute(double x) {
+  return __builtin_fabs(x);
+}
 
 // |magnitude| with the sign bit of `sign`.
-static inline float copy_sign(float magnitude, float sign) { return __builtin_copysignf(magnitude, sign); }
+static inline float copy_sign(float magnitude, float sign) {
+  return __builtin_copysignf(magnitude, sign);
+}
 
-static inline float to_float(int32_t x) { return static_cast<float>(x); }
-static inline float to_float(uint32_t x) { return static_cast<float>(x); }
-static inline int32_t to_int(float x) { return static_cast<int32_t>(x); }  // towards zero; |x| < 2^31
+static inline float to_float(int32_t x) {
+  return static_cast<float>(x);
+}
+static inline float to_float(uint32_t x) {
+  return static_cast<float>(x);
+}
+static inline int32_t to_int(float x) {
+  return static_cast<int32_t>(x);
+}  // towards zero; |x| < 2^31
 
 static inline uint32_t as_bits(float x) {
   uint32_t bits;

@@ -28,14 +28,16 @@ constexpr double srgb_to_linear(double s) {
 // Linear value of each of the 256 codes.
 inline constexpr std::array<float, 256> kLinearOfSrgb = [] {
   std::array<float, 256> table{};
-  for (size_t i = 0; i < 256; ++i) table[i] = static_cast<float>(srgb_to_linear(static_cast<double>(i) / 255));
+  for (size_t i = 0; i < 256; ++i)
+    table[i] = static_cast<float>(srgb_to_linear(static_cast<double>(i) / 255));
   return table;
 }();
 
 // Code i + 1 begins at this linear value, half way (in code) between its neighbours.
 inline constexpr std::array<float, 255> kSrgbThresholds = [] {
   std::array<float, 255> table{};
-  for (size_t i = 0; i < 255; ++i) table[i] = static_cast<float>(srgb_to_linear((static_cast<double>(i) + 0.5) / 255));
+  for (size_t i = 0; i < 255; ++i)
+    table[i] = static_cast<float>(srgb_to_linear((static_cast<double>(i) + 0.5) / 255));
   return table;
 }();
 

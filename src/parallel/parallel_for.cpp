@@ -64,7 +64,9 @@ ThreadPool::~ThreadPool() {
   for (std::thread& t : state_->threads) t.join();
 }
 
-size_t ThreadPool::workers() const { return state_->threads.size() + 1; }
+size_t ThreadPool::workers() const {
+  return state_->threads.size() + 1;
+}
 
 void ThreadPool::parallel_for(size_t count, const Body& body) {
   State& s = *state_;

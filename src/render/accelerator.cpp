@@ -23,7 +23,9 @@ void set_views(const Scene& scene, Accelerator& a) {
 
 }  // namespace
 
-CutOuts make_cut_outs(const Scene& scene) { return {cut_out_is_there, &scene}; }
+CutOuts make_cut_outs(const Scene& scene) {
+  return {cut_out_is_there, &scene};
+}
 
 Vec2 texcoord_at(const Mesh& mesh, uint32_t triangle, float u, float v) {
   if (mesh.triangle_texcoords.empty()) return {0, 0};
@@ -33,7 +35,8 @@ Vec2 texcoord_at(const Mesh& mesh, uint32_t triangle, float u, float v) {
     corner[k] = i == kNoIndex ? Vec2{0, 0} : mesh.texcoords[i];
   }
   const float w = (1 - u) - v;
-  return {(corner[0].x * w + corner[1].x * u) + corner[2].x * v, (corner[0].y * w + corner[1].y * u) + corner[2].y * v};
+  return {(corner[0].x * w + corner[1].x * u) + corner[2].x * v,
+          (corner[0].y * w + corner[1].y * u) + corner[2].y * v};
 }
 
 void gather_triangles(const Scene& scene, ThreadPool& pool, Accelerator& accelerator) {

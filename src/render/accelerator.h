@@ -24,7 +24,8 @@ struct Accelerator {
 };
 
 // Throws Interrupted when control.stop is set on the way.
-void build_accelerator(const Scene& scene, ThreadPool& pool, const Control& control, Accelerator& accelerator);
+void build_accelerator(const Scene& scene, ThreadPool& pool, const Control& control,
+                       Accelerator& accelerator);
 
 // The triangles alone, with trees that are empty: all that the rasterizer needs.
 void gather_triangles(const Scene& scene, ThreadPool& pool, Accelerator& accelerator);

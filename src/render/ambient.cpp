@@ -4,13 +4,14 @@
 
 namespace vitral {
 
-void ambient_visibility(const FrameContext& frame, const PointPacket& points, PassTally& tally, float* visibility) {
+void ambient_visibility(const FrameContext& frame, const PointPacket& points, PassTally& tally,
+                        float* visibility) {
   for (int lane = 0; lane < kPacketSize; ++lane) visibility[lane] = 1;
   if (!frame.settings.effects.ambient_occlusion || points.live == 0) return;
   const PassTimer timer(tally, Pass::ao);
   alignas(64) uint32_t free_rays[kPacketSize];
-  frame.kernels.ambient_occlusion(frame.accelerator.view, points, {frame.ao_strata, frame.settings.ao_distance},
-                                  free_rays);
+  frame.kernels.ambient_occlusion(frame.accelerator.view, points,
+                                  {frame.ao_strata, frame.settings.ao_distance}, free_rays);
   for (int lane = 0; lane < kPacketSize; ++lane) {
     if (points.live >> lane & 1) visibility[lane] = frame.ao_of_free_rays[free_rays[lane]];
   }

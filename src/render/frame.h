@@ -19,17 +19,17 @@ struct FrameContext {
   const Accelerator& accelerator;
   const Kernels& kernels;
   Pinhole camera;
-  const RasterView* raster;             // null: primary rays are traced
-  float least_importance;               // settings.min_importance, at least 1/4096: what a surface sends
-                                        // on weighs no more than what came, so no pixel has more paths
-  int ao_strata;                        // n of n x n samples
-  std::vector<float> ao_of_free_rays;   // (k / N)^exponent for k = 0..N
+  const RasterView* raster;            // null: primary rays are traced
+  float least_importance;              // settings.min_importance, at least 1/4096: what a surface sends
+                                       // on weighs no more than what came, so no pixel has more paths
+  int ao_strata;                       // n of n x n samples
+  std::vector<float> ao_of_free_rays;  // (k / N)^exponent for k = 0..N
 };
 
 enum class Pass { raster, shadows, reflection, refraction, ao, shade, resolve };
 inline constexpr size_t kPasses = 7;
-inline constexpr std::array<const char*, kPasses> kPassNames = {"raster",           "shadows", "reflection", "refraction",
-                                                                "ao", "shade",   "resolve"};
+inline constexpr std::array<const char*, kPasses> kPassNames = {
+    "raster", "shadows", "reflection", "refraction", "ao", "shade", "resolve"};
 
 struct PassTally {
   std::array<double, kPasses> seconds{};
@@ -41,7 +41,9 @@ class PassTimer {
  public:
   PassTimer(PassTally& tally, Pass pass)
       : seconds_(tally.seconds[static_cast<size_t>(pass)]), start_(std::chrono::steady_clock::now()) {}
-  ~PassTimer() { seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+  ~PassTimer() {
+    seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
   PassTimer(const PassTimer&) = delete;
   PassTimer& operator=(const PassTimer&) = delete;
 
@@ -54,7 +56,9 @@ inline void count_rays(PassTally& tally, Pass pass, uint64_t lanes) {
   tally.rays[static_cast<size_t>(pass)] += static_cast<uint64_t>(__builtin_popcountll(lanes));
 }
 
-inline Vec3 get(const float* x, const float* y, const float* z, int lane) { return {x[lane], y[lane], z[lane]}; }
+inline Vec3 get(const float* x, const float* y, const float* z, int lane) {
+  return {x[lane], y[lane], z[lane]};
+}
 
 // Colours of 64 points.
 struct ColorPacket {
@@ -69,25 +73,27 @@ struct LightDetail {
 
 // primary.cpp: what the camera sees. First the tile, when it is rasterized; then block by block the
 // rays through the pixel centres and their hits. `lanes` are the pixels wanted.
-void rasterize_tile(const FrameContext& frame, int tile_x, int tile_y, PassTally& tally, TileVisibility& visibility);
-void primary_hits(const FrameContext& frame, const TileVisibility& visibility, int block, int x, int y, uint64_t lanes,
-                  PassTally& tally, RayPacket& rays, HitPacket& hits);
+void rasterize_tile(const FrameContext& frame, int tile_x, int tile_y, PassTally& tally,
+                    TileVisibility& visibility);
+void primary_hits(const FrameContext& frame, const TileVisibility& visibility, int block, int x, int y,
+                  uint64_t lanes, PassTally& tally, RayPacket& rays, HitPacket& hits);
 
 // resolve.cpp: encodes linear colours; counts and paints red those that are not finite.
 Rgb8 encode_pixel(Vec3& color, uint64_t& not_finite);
 
 // shadow.cpp: how much of the light arrives at each point, per colour channel: 1 lit (or facing
 // away), 0 blocked, between for glass.
-void light_visibility(const FrameContext& frame, const Light& light, const PointPacket& points, PassTally& tally,
-                      ColorPacket& visibility);
+void light_visibility(const FrameContext& frame, const Light& light, const PointPacket& points,
+                      PassTally& tally, ColorPacket& visibility);
 
 // ambient.cpp: (free/N)^exponent of each live point.
-void ambient_visibility(const FrameContext& frame, const PointPacket& points, PassTally& tally, float* visibility);
+void ambient_visibility(const FrameContext& frame, const PointPacket& points, PassTally& tally,
+                        float* visibility);
 
 // direct.cpp: the light that the live points send to their viewers by themselves; reflection and
 // refraction come on top.
-void light_surfaces(const FrameContext& frame, const SurfacePacket& surfaces, PassTally& tally, ColorPacket& out,
-                    LightDetail& detail);
+void light_surfaces(const FrameContext& frame, const SurfacePacket& surfaces, PassTally& tally,
+                    ColorPacket& out, LightDetail& detail);
 
 // A secondary ray on its way, and what its light will be multiplied with.
 enum class PathKind : uint8_t { reflection, refraction };
@@ -97,11 +103,12 @@ struct Path {
   uint16_t pixel;  // in the tile
   uint8_t depth;   // 1: spawned at the camera's hit
   PathKind kind;
-  PathKind root;   // of the first generation
+  PathKind root;  // of the first generation
 };
 
 // glass.cpp: the reflected and refracted rays that start at a surface. Lane i belongs to parents[i].
-void spawn_paths(const FrameContext& frame, const SurfacePacket& surfaces, const Path* parents, std::vector<Path>& out);
+void spawn_paths(const FrameContext& frame, const SurfacePacket& surfaces, const Path* parents,
+                 std::vector<Path>& out);
 
 // glass.cpp: follows paths until none is left; calls nothing back, adds weight * light to the pixels.
 struct PathSums {

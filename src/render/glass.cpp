@@ -23,7 +23,8 @@ Split split_light(const Material& m, const Settings& settings, float cos_i, Side
   s.cos_i = cos_i;
   const Effects& on = settings.effects;
   switch (m.optics) {
-    case Optics::opaque: break;
+    case Optics::opaque:
+      break;
     case Optics::mirror:
       if (on.reflection) s.reflected = m.specular;
       break;
@@ -48,7 +49,8 @@ Split split_light(const Material& m, const Settings& settings, float cos_i, Side
   return s;
 }
 
-Path child_of(const Path& parent, PathKind kind, const Vec3& origin, const Vec3& direction, const Vec3& weight) {
+Path child_of(const Path& parent, PathKind kind, const Vec3& origin, const Vec3& direction,
+              const Vec3& weight) {
   Path p = parent;
   p.origin = origin;
   p.direction = direction;
@@ -60,7 +62,8 @@ Path child_of(const Path& parent, PathKind kind, const Vec3& origin, const Vec3&
   return p;
 }
 
-void spawn_at(const FrameContext& frame, const SurfacePacket& s, int lane, const Path& parent, std::vector<Path>& out) {
+void spawn_at(const FrameContext& frame, const SurfacePacket& s, int lane, const Path& parent,
+              std::vector<Path>& out) {
   const Material& m = frame.scene.materials[s.material[lane]];
   const Vec3 position = get(s.points.px, s.points.py, s.points.pz, lane);
   const Vec3 geometric = get(s.points.gx, s.points.gy, s.points.gz, lane);
@@ -74,7 +77,8 @@ void spawn_at(const FrameContext& frame, const SurfacePacket& s, int lane, const
   if (luminance(parent.weight * split.reflected) >= frame.least_importance) {
     Vec3 d = reflect(incoming, n);
     if (!(dot(d, geometric) > 0)) d = reflect(d, geometric);
-    out.push_back(child_of(parent, PathKind::reflection, position + geometric * s.points.offset[lane], normalize(d), split.reflected));
+    out.push_back(child_of(parent, PathKind::reflection, position + geometric * s.points.offset[lane],
+                           normalize(d), split.reflected));
   }
   if (luminance(parent.weight * split.refracted) >= frame.least_importance) {
     Vec3 d = incoming;
@@ -83,7 +87,8 @@ void spawn_at(const FrameContext& frame, const SurfacePacket& s, int lane, const
       d = refract(incoming, n, split.eta, cos_i, cos_t);
       if (!(dot(d, geometric) < 0)) d = reflect(d, geometric);
     }
-    out.push_back(child_of(parent, PathKind::refraction, position - geometric * s.points.offset[lane], normalize(d), split.refracted));
+    out.push_back(child_of(parent, PathKind::refraction, position - geometric * s.points.offset[lane],
+                           normalize(d), split.refracted));
   }
 }
 
@@ -91,8 +96,8 @@ void spawn_at(const FrameContext& frame, const SurfacePacket& s, int lane, const
 // what a pixel adds up, and in which order, depends on the pixel alone.
 void sort_paths(const std::vector<Path>& paths, std::vector<Path>& sorted) {
   const auto bucket = [](const Path& p) {
-    return (p.kind == PathKind::refraction ? 8u : 0u) + (p.direction.x < 0 ? 1u : 0u) + (p.direction.y < 0 ? 2u : 0u) +
-           (p.direction.z < 0 ? 4u : 0u);
+    return (p.kind == PathKind::refraction ? 8u : 0u) + (p.direction.x < 0 ? 1u : 0u) +
+           (p.direction.y < 0 ? 2u : 0u) + (p.direction.z < 0 ? 4u : 0u);
   };
   std::array<size_t, 17> first{};
   for (const Path& p : paths) ++first[bucket(p) + 1];
@@ -102,8 +107,8 @@ void sort_paths(const std::vector<Path>& paths, std::vector<Path>& sorted) {
 }
 
 // Traces and lights up to 64 paths of one kind, adds their light up, spawns the next generation.
-void trace_packet(const FrameContext& frame, const Path* paths, int count, std::vector<Path>& next, PassTally& tally,
-                  const PathSums& sums) {
+void trace_packet(const FrameContext& frame, const Path* paths, int count, std::vector<Path>& next,
+                  PassTally& tally, const PathSums& sums) {
   RayPacket rays;
   HitPacket hits;
   SurfacePacket surfaces;
@@ -142,7 +147,8 @@ void trace_packet(const FrameContext& frame, const Path* paths, int count, std::
 
 }  // namespace
 
-void spawn_paths(const FrameContext& frame, const SurfacePacket& surfaces, const Path* parents, std::vector<Path>& out) {
+void spawn_paths(const FrameContext& frame, const SurfacePacket& surfaces, const Path* parents,
+                 std::vector<Path>& out) {
   for (int lane = 0; lane < kPacketSize; ++lane) {
     if (!(surfaces.points.live >> lane & 1) || parents[lane].depth >= frame.settings.max_depth) continue;
     if (frame.scene.materials[surfaces.material[lane]].optics == Optics::opaque) continue;

@@ -4,14 +4,15 @@
 
 namespace vitral {
 
-void rasterize_tile(const FrameContext& frame, int tile_x, int tile_y, PassTally& tally, TileVisibility& visibility) {
+void rasterize_tile(const FrameContext& frame, int tile_x, int tile_y, PassTally& tally,
+                    TileVisibility& visibility) {
   if (!frame.raster) return;
   const PassTimer timer(tally, Pass::raster);
   frame.kernels.fill_tile(*frame.raster, tile_x / kTileSide, tile_y / kTileSide, visibility);
 }
 
-void primary_hits(const FrameContext& frame, const TileVisibility& visibility, int block, int x, int y, uint64_t lanes,
-                  PassTally& tally, RayPacket& rays, HitPacket& hits) {
+void primary_hits(const FrameContext& frame, const TileVisibility& visibility, int block, int x, int y,
+                  uint64_t lanes, PassTally& tally, RayPacket& rays, HitPacket& hits) {
   const PassTimer timer(tally, Pass::raster);
   frame.kernels.primary_rays(frame.camera, x, y, rays);
   rays.live = lanes;

@@ -51,36 +51,47 @@ void check_settings(const Settings& s) {
                                 s.crop.x <= s.width - s.crop.width && s.crop.y <= s.height - s.crop.height),
           "the crop must lie inside the picture");
   const int n = static_cast<int>(square_root(static_cast<float>(s.ao_samples)) + 0.5f);
-  require(s.ao_samples >= 1 && s.ao_samples <= 1024 && n * n == s.ao_samples, "the number of ambient samples must be a square from 1 to 1024");
+  require(s.ao_samples >= 1 && s.ao_samples <= 1024 && n * n == s.ao_samples,
+          "the number of ambient samples must be a square from 1 to 1024");
   require(s.ao_distance > 0 && std::isfinite(s.ao_distance), "the ambient distance must be greater than 0");
   require(s.ao_exponent > 0 && std::isfinite(s.ao_exponent), "the ambient exponent must be greater than 0");
   require(s.max_depth >= 0 && s.max_depth <= 100, "the depth limit must be 0 to 100");
   require(s.min_importance >= 0 && s.min_importance <= 1, "the least importance must be 0 to 1");
   require(s.threads >= 0 && s.threads <= 1024, "the number of threads must be 0 to 1024");
   for (const std::string& name : s.aovs) {
-    require(std::find(std::begin(kAovNames), std::end(kAovNames), name) != std::end(kAovNames), "unknown auxiliary picture");
+    require(std::find(std::begin(kAovNames), std::end(kAovNames), name) != std::end(kAovNames),
+            "unknown auxiliary picture");
   }
 }
 
 void check_camera(const Camera& c) {
-  const auto finite = [](const Vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); };
-  if (!finite(c.position) || !finite(c.view) || !finite(c.up)) throw UsageError("the camera's vectors must be finite");
+  const auto finite = [](const Vec3& v) {
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+  };
+  if (!finite(c.position) || !finite(c.view) || !finite(c.up))
+    throw UsageError("the camera's vectors must be finite");
   if (!(length(cross(normalize(to_double(c.view)), normalize(to_double(c.up)))) > 1e-6)) {
     throw UsageError("the camera's up vector must not be zero or along its view");
   }
   if (!(c.fov > 0 && c.fov < 180)) throw UsageError("the field of view must be between 0 and 180 degrees");
-  if (!(c.near > 0 && c.far > c.near && std::isfinite(c.far))) throw UsageError("the camera needs 0 < near < far");
+  if (!(c.near > 0 && c.far > c.near && std::isfinite(c.far)))
+    throw UsageError("the camera needs 0 < near < far");
 }
 
-Rectangle crop_of(const Settings& s) { return s.crop.width == 0 ? Rectangle{0, 0, s.width, s.height} : s.crop; }
+Rectangle crop_of(const Settings& s) {
+  return s.crop.width == 0 ? Rectangle{0, 0, s.width, s.height} : s.crop;
+}
 
 // The lanes of the block at (x, y) that lie in the crop.
 uint64_t lanes_inside(const Rectangle& crop, int x, int y) {
-  if (x >= crop.x && y >= crop.y && x + kBlockSide <= crop.x + crop.width && y + kBlockSide <= crop.y + crop.height) return ~0ull;
+  if (x >= crop.x && y >= crop.y && x + kBlockSide <= crop.x + crop.width &&
+      y + kBlockSide <= crop.y + crop.height)
+    return ~0ull;
   uint64_t lanes = 0;
   for (int lane = 0; lane < kPacketSize; ++lane) {
     const int px = x + lane % kBlockSide, py = y + lane / kBlockSide;
-    if (px >= crop.x && px < crop.x + crop.width && py >= crop.y && py < crop.y + crop.height) lanes |= 1ull << lane;
+    if (px >= crop.x && px < crop.x + crop.width && py >= crop.y && py < crop.y + crop.height)
+      lanes |= 1ull << lane;
   }
   return lanes;
 }
@@ -102,8 +113,8 @@ void write_aovs(const AovTargets& targets, const SurfacePacket& s, const LightDe
 }
 
 // Carries one tile through all passes while it is in cache.
-void render_tile(const FrameContext& frame, const Rectangle& crop, int tile_x, int tile_y, Worker& worker, Frame& out,
-                 const AovTargets& targets) {
+void render_tile(const FrameContext& frame, const Rectangle& crop, int tile_x, int tile_y, Worker& worker,
+                 Frame& out, const AovTargets& targets) {
   worker.color.assign(kTilePixels, frame.scene.background);
   PathSums sums{worker.color.data(), nullptr, nullptr};
   if (targets.any) {
@@ -114,11 +125,13 @@ void render_tile(const FrameContext& frame, const Rectangle& crop, int tile_x, i
   worker.paths.current.clear();
   rasterize_tile(frame, tile_x, tile_y, worker.tally, worker.visibility);
   const auto frame_pixel = [&](int x, int y) {
-    return static_cast<size_t>(y - crop.y) * static_cast<size_t>(crop.width) + static_cast<size_t>(x - crop.x);
+    return static_cast<size_t>(y - crop.y) * static_cast<size_t>(crop.width) +
+           static_cast<size_t>(x - crop.x);
   };
 
   for (int block = 0; block < kTileBlocks; ++block) {
-    const int x = tile_x + block % kTileBlocksAcross * kBlockSide, y = tile_y + block / kTileBlocksAcross * kBlockSide;
+    const int x = tile_x + block % kTileBlocksAcross * kBlockSide,
+              y = tile_y + block / kTileBlocksAcross * kBlockSide;
     const uint64_t lanes = lanes_inside(crop, x, y);
     if (lanes == 0) continue;
     RayPacket rays;
@@ -146,7 +159,9 @@ void render_tile(const FrameContext& frame, const Rectangle& crop, int tile_x, i
       if (!(surfaces.points.live >> lane & 1)) continue;
       ++worker.covered;
       worker.color[camera_paths[lane].pixel] = light.color[lane];
-      if (targets.any) write_aovs(targets, surfaces, detail, lane, frame_pixel(x + lane % kBlockSide, y + lane / kBlockSide));
+      if (targets.any)
+        write_aovs(targets, surfaces, detail, lane,
+                   frame_pixel(x + lane % kBlockSide, y + lane / kBlockSide));
     }
     spawn_paths(frame, surfaces, camera_paths, worker.paths.current);
   }
@@ -155,7 +170,8 @@ void render_tile(const FrameContext& frame, const Rectangle& crop, int tile_x, i
   const PassTimer timer(worker.tally, Pass::resolve);
   for (int y = std::max(tile_y, crop.y); y < std::min(tile_y + kTileSide, crop.y + crop.height); ++y) {
     for (int x = std::max(tile_x, crop.x); x < std::min(tile_x + kTileSide, crop.x + crop.width); ++x) {
-      const size_t here = static_cast<size_t>((y - tile_y) * kTileSide + (x - tile_x)), there = frame_pixel(x, y);
+      const size_t here = static_cast<size_t>((y - tile_y) * kTileSide + (x - tile_x)),
+                   there = frame_pixel(x, y);
       out.pixels.pixels[there] = encode_pixel(worker.color[here], worker.not_finite);
       out.radiance.pixels[there] = worker.color[here];
       if (targets.by_index[9]) targets.by_index[9]->pixels.pixels[there] = worker.reflection[here];
@@ -185,19 +201,27 @@ void collect_stats(const std::vector<Worker>& workers, Stats& stats) {
 
 }  // namespace
 
-Frame render_frame(const Scene& scene, const Accelerator& accelerator, const Camera& camera, const Settings& settings,
-                   ThreadPool& pool, Control& control) {
+Frame render_frame(const Scene& scene, const Accelerator& accelerator, const Camera& camera,
+                   const Settings& settings, ThreadPool& pool, Control& control) {
   check_settings(settings);
   check_camera(camera);
   const auto start = std::chrono::steady_clock::now();
   const Rectangle crop = crop_of(settings);
 
-  FrameContext frame{scene, settings, accelerator, choose_kernels(settings.isa), make_pinhole(camera, settings.width, settings.height),
-                     nullptr, 0, 0, {}};
+  FrameContext frame{scene,
+                     settings,
+                     accelerator,
+                     choose_kernels(settings.isa),
+                     make_pinhole(camera, settings.width, settings.height),
+                     nullptr,
+                     0,
+                     0,
+                     {}};
   frame.least_importance = greatest(settings.min_importance, 1.0f / 4096);
   frame.ao_strata = static_cast<int>(square_root(static_cast<float>(settings.ao_samples)) + 0.5f);
   for (int k = 0; k <= settings.ao_samples; ++k) {
-    frame.ao_of_free_rays.push_back(power(static_cast<float>(k) / static_cast<float>(settings.ao_samples), settings.ao_exponent));
+    frame.ao_of_free_rays.push_back(
+        power(static_cast<float>(k) / static_cast<float>(settings.ao_samples), settings.ao_exponent));
   }
 
   Frame out;
@@ -206,11 +230,14 @@ Frame render_frame(const Scene& scene, const Accelerator& accelerator, const Cam
   AovTargets targets;
   out.aovs.reserve(settings.aovs.size());
   for (const std::string& name : settings.aovs) {
-    const size_t index = static_cast<size_t>(std::find(std::begin(kAovNames), std::end(kAovNames), name) - std::begin(kAovNames));
+    const size_t index = static_cast<size_t>(std::find(std::begin(kAovNames), std::end(kAovNames), name) -
+                                             std::begin(kAovNames));
     if (targets.by_index[index]) continue;
     const bool scalar = index == 3 || (index >= 5 && index <= 8);
-    const float nothing = index == 5 || index == 6 ? -1.0f : 0.0f;  // 0 is a number of a material, of a triangle
-    out.aovs.push_back({name, scalar ? 1 : 3, Image<Vec3>(crop.width, crop.height, Vec3{nothing, nothing, nothing})});
+    const float nothing =
+        index == 5 || index == 6 ? -1.0f : 0.0f;  // 0 is a number of a material, of a triangle
+    out.aovs.push_back(
+        {name, scalar ? 1 : 3, Image<Vec3>(crop.width, crop.height, Vec3{nothing, nothing, nothing})});
     targets.by_index[index] = &out.aovs.back();
     targets.any = true;
   }
@@ -244,8 +271,8 @@ Frame render_frame(const Scene& scene, const Accelerator& accelerator, const Cam
     if (control.stop.load(std::memory_order_relaxed)) throw Interrupted();
     Worker& worker = workers[w];
     const auto before = worker.tally.rays;
-    render_tile(frame, crop, (first_x + static_cast<int>(i) % tiles_x) * kTileSide, (first_y + static_cast<int>(i) / tiles_x) * kTileSide,
-                worker, out, targets);
+    render_tile(frame, crop, (first_x + static_cast<int>(i) % tiles_x) * kTileSide,
+                (first_y + static_cast<int>(i) / tiles_x) * kTileSide, worker, out, targets);
     if (!control.on_progress) return;
     const std::lock_guard<std::mutex> lock(progress_mutex);
     for (size_t p = 0; p < kPasses; ++p) rays += worker.tally.rays[p] - before[p];
@@ -258,8 +285,10 @@ Frame render_frame(const Scene& scene, const Accelerator& accelerator, const Cam
   stats.triangles = scene.mesh.triangles.size();
   stats.dropped_triangles = scene.dropped_triangles;
   stats.tree_nodes = accelerator.all.nodes.size();
-  stats.tree_bytes = accelerator.all.nodes.size() * sizeof(KdNode) + accelerator.all.references.size() * sizeof(uint32_t);
-  workers[0].tally.seconds[static_cast<size_t>(Pass::raster)] += setup_tally.seconds[static_cast<size_t>(Pass::raster)];
+  stats.tree_bytes =
+      accelerator.all.nodes.size() * sizeof(KdNode) + accelerator.all.references.size() * sizeof(uint32_t);
+  workers[0].tally.seconds[static_cast<size_t>(Pass::raster)] +=
+      setup_tally.seconds[static_cast<size_t>(Pass::raster)];
   collect_stats(workers, stats);
   stats.frame_seconds = seconds_since(start);
   return out;
@@ -269,7 +298,8 @@ Frame render_frame(const Scene& scene, const Accelerator& accelerator, const Cam
 static bool needs_tree(const Scene& scene, const Settings& settings) {
   const Effects& on = settings.effects;
   if (settings.primary == Primary::trace || on.shadows || on.ambient_occlusion) return true;
-  const bool bends = std::any_of(scene.materials.begin(), scene.materials.end(), [](const Material& m) { return m.optics != Optics::opaque; });
+  const bool bends = std::any_of(scene.materials.begin(), scene.materials.end(),
+                                 [](const Material& m) { return m.optics != Optics::opaque; });
   return bends && (on.reflection || on.refraction);
 }
 

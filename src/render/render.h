@@ -5,7 +5,7 @@
 
 namespace vitral {
 
-Frame render_frame(const Scene& scene, const Accelerator& accelerator, const Camera& camera, const Settings& settings,
-                   ThreadPool& pool, Control& control);
+Frame render_frame(const Scene& scene, const Accelerator& accelerator, const Camera& camera,
+                   const Settings& settings, ThreadPool& pool, Control& control);
 
 }  // namespace vitral

@@ -20,8 +20,8 @@ Vec3 glass_tint(const FrameContext& frame, Ray ray) {
 
 }  // namespace
 
-void light_visibility(const FrameContext& frame, const Light& light, const PointPacket& points, PassTally& tally,
-                      ColorPacket& visibility) {
+void light_visibility(const FrameContext& frame, const Light& light, const PointPacket& points,
+                      PassTally& tally, ColorPacket& visibility) {
   for (Vec3& v : visibility.color) v = {1, 1, 1};
   if (!frame.settings.effects.shadows) return;
   const PassTimer timer(tally, Pass::shadows);

@@ -16,7 +16,8 @@ Vec3 shading_normal(const Mesh& mesh, uint32_t triangle, float u, float v, const
   if (mesh.triangle_normals.empty()) return geometric;
   const Corners& index = mesh.triangle_normals[triangle];
   if (index[0] == kNoIndex || index[1] == kNoIndex || index[2] == kNoIndex) return geometric;
-  const Vec3 sum = (mesh.normals[index[0]] * ((1 - u) - v) + mesh.normals[index[1]] * u) + mesh.normals[index[2]] * v;
+  const Vec3 sum =
+      (mesh.normals[index[0]] * ((1 - u) - v) + mesh.normals[index[1]] * u) + mesh.normals[index[2]] * v;
   const float squared = dot(sum, sum);
   if (!(squared > 1e-12f)) return geometric;
   const Vec3 n = sum * (1.0f / square_root(squared));
@@ -25,7 +26,8 @@ Vec3 shading_normal(const Mesh& mesh, uint32_t triangle, float u, float v, const
 
 }  // namespace
 
-void make_surfaces(const Scene& scene, const RayPacket& rays, const HitPacket& hits, uint64_t lanes, SurfacePacket& out) {
+void make_surfaces(const Scene& scene, const RayPacket& rays, const HitPacket& hits, uint64_t lanes,
+                   SurfacePacket& out) {
   const Mesh& mesh = scene.mesh;
   PointPacket& p = out.points;
   p.live = 0;
@@ -55,7 +57,8 @@ void make_surfaces(const Scene& scene, const RayPacket& rays, const HitPacket& h
     p.px[lane] = position.x, p.py[lane] = position.y, p.pz[lane] = position.z;
     p.gx[lane] = geometric.x, p.gy[lane] = geometric.y, p.gz[lane] = geometric.z;
     p.nx[lane] = shading.x, p.ny[lane] = shading.y, p.nz[lane] = shading.z;
-    p.offset[lane] = ray_offset(greatest(largest_component(a), greatest(largest_component(b), largest_component(c))));
+    p.offset[lane] =
+        ray_offset(greatest(largest_component(a), greatest(largest_component(b), largest_component(c))));
     out.vx[lane] = viewer.x, out.vy[lane] = viewer.y, out.vz[lane] = viewer.z;
     out.t[lane] = hits.t[lane];
     out.triangle[lane] = triangle;
@@ -64,7 +67,8 @@ void make_surfaces(const Scene& scene, const RayPacket& rays, const HitPacket& h
     const Material& m = scene.materials[out.material[lane]];
     Vec3 albedo = m.diffuse;
     if (m.diffuse_map != kNoTexture) {
-      albedo *= sample_color(scene.textures[static_cast<size_t>(m.diffuse_map)], texcoord_at(mesh, triangle, u, v));
+      albedo *=
+          sample_color(scene.textures[static_cast<size_t>(m.diffuse_map)], texcoord_at(mesh, triangle, u, v));
     }
     out.r[lane] = albedo.x, out.g[lane] = albedo.y, out.b[lane] = albedo.z;
   }

@@ -17,6 +17,7 @@ struct alignas(64) SurfacePacket {
 };
 
 // Fills the lanes of `lanes` that hit something and sets points.live to them; keys are the caller's.
-void make_surfaces(const Scene& scene, const RayPacket& rays, const HitPacket& hits, uint64_t lanes, SurfacePacket& out);
+void make_surfaces(const Scene& scene, const RayPacket& rays, const HitPacket& hits, uint64_t lanes,
+                   SurfacePacket& out);
 
 }  // namespace vitral

@@ -18,7 +18,9 @@ float floor_of(float x) {
   return whole > x ? whole - 1 : whole;
 }
 
-int wrap(int i, int n) { return i < 0 ? i + n : i >= n ? i - n : i; }
+int wrap(int i, int n) {
+  return i < 0 ? i + n : i >= n ? i - n : i;
+}
 
 Footprint footprint(const Texture& t, Vec2 uv) {
   // Reduced to [0, 1) first; texel centres are at (i + 0.5) / n; the first row is v = 1.
@@ -30,7 +32,9 @@ Footprint footprint(const Texture& t, Vec2 uv) {
   const float fx = x - x0, fy = y - y0;
   const int left = wrap(static_cast<int>(x0), t.width), right = wrap(left + 1, t.width);
   const int top = wrap(static_cast<int>(y0), t.height), bottom = wrap(top + 1, t.height);
-  const auto at = [&](int i, int j) { return (static_cast<size_t>(j) * static_cast<size_t>(t.width) + static_cast<size_t>(i)) * 4; };
+  const auto at = [&](int i, int j) {
+    return (static_cast<size_t>(j) * static_cast<size_t>(t.width) + static_cast<size_t>(i)) * 4;
+  };
   return {{at(left, top), at(right, top), at(left, bottom), at(right, bottom)},
           {(1 - fx) * (1 - fy), fx * (1 - fy), (1 - fx) * fy, fx * fy}};
 }
