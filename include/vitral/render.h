@@ -46,6 +46,7 @@ struct Settings {
   Isa isa = Isa::automatic;
   int threads = 0;  // 0: one per processor
   uint32_t seed = 1;
+  bool keep_radiance = true;   // Frame::radiance is filled; 12 bytes a pixel
   std::vector<std::string> aovs;  // names out of kAovNames
 };
 
@@ -78,7 +79,7 @@ struct Stats {
 };
 
 struct Frame {
-  Image<Vec3> radiance;  // linear; the crop only
+  Image<Vec3> radiance;  // linear; the crop only; empty unless settings.keep_radiance
   Image<Rgb8> pixels;    // sRGB
   std::vector<Aov> aovs;
   Stats stats;

@@ -70,6 +70,7 @@ void override_settings(const Options& options, Settings& settings) {
   override_with(options.threads, settings.threads);
   override_with(options.seed, settings.seed);
   settings.aovs = options.aovs;
+  settings.keep_radiance = false;  // nobody writes it
 }
 
 void override_camera(const Options& options, Camera& camera) {
@@ -174,8 +175,8 @@ void load_job(Job& job, const Options& options) {
 }
 
 size_t frame_bytes(const Settings& settings) {
-  // Radiance, pixels, auxiliary pictures, and what the encoder of the PNG holds beside them.
-  const size_t bytes = sizeof(Vec3) * (1 + settings.aovs.size()) + sizeof(Rgb8) * 3;
+  // Pixels, auxiliary pictures, and what the encoder of the PNG holds beside them.
+  const size_t bytes = sizeof(Vec3) * settings.aovs.size() + sizeof(Rgb8) * 3;
   const bool whole = settings.crop.width == 0;
   return bytes * static_cast<size_t>(whole ? settings.width : settings.crop.width) *
          static_cast<size_t>(whole ? settings.height : settings.crop.height);

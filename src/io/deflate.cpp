@@ -179,6 +179,15 @@ class Deflater {
 
   static size_t match(const uint8_t* a, const uint8_t* b, size_t limit) {
     size_t n = 0;
+    for (uint64_t x, y; n + sizeof x <= limit; n += sizeof x) {
+      std::memcpy(&x, a + n, sizeof x);
+      std::memcpy(&y, b + n, sizeof y);
+      if (x == y) continue;
+      const uint64_t differ = x ^ y;
+      const int zeros =
+          std::endian::native == std::endian::little ? std::countr_zero(differ) : std::countl_zero(differ);
+      return n + static_cast<size_t>(zeros / 8);
+    }
     while (n < limit && a[n] == b[n]) ++n;
     return n;
   }

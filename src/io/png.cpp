@@ -91,8 +91,8 @@ std::string encode_png(const Image<Rgb8>& image) {
       out[0] = filter;
       std::memcpy(out + 1, tried.data(), bytes);
     };
-    keep_if_better(kSub, filter_row<kSub>(r, a, bytes, tried.data()));
-    keep_if_better(kPaeth, filter_row<kPaeth>(r, a, bytes, tried.data()));
+    if (best > 0) keep_if_better(kSub, filter_row<kSub>(r, a, bytes, tried.data()));
+    if (best > 0) keep_if_better(kPaeth, filter_row<kPaeth>(r, a, bytes, tried.data()));
     std::swap(row, above);
   }
 

@@ -72,9 +72,11 @@ struct LightDetail {
 };
 
 // primary.cpp: what the camera sees. First the tile, when it is rasterized; then block by block the
-// rays through the pixel centres and their hits. `lanes` are the pixels wanted.
+// rays through the pixel centres and their hits, unless the rasterizer saw nothing in the block.
+// `lanes` are the pixels wanted.
 void rasterize_tile(const FrameContext& frame, int tile_x, int tile_y, PassTally& tally,
                     TileVisibility& visibility);
+bool is_background(const FrameContext& frame, const TileVisibility& visibility, int block);
 void primary_hits(const FrameContext& frame, const TileVisibility& visibility, int block, int x, int y,
                   uint64_t lanes, PassTally& tally, RayPacket& rays, HitPacket& hits);
 

@@ -2,6 +2,8 @@
 // the same triangle they give the same hit; at silhouettes the rasterizer's snapped edges decide.
 #include "render/frame.h"
 
+#include <algorithm>
+
 namespace vitral {
 
 void rasterize_tile(const FrameContext& frame, int tile_x, int tile_y, PassTally& tally,
@@ -9,6 +11,12 @@ void rasterize_tile(const FrameContext& frame, int tile_x, int tile_y, PassTally
   if (!frame.raster) return;
   const PassTimer timer(tally, Pass::raster);
   frame.kernels.fill_tile(*frame.raster, tile_x / kTileSide, tile_y / kTileSide, visibility);
+}
+
+bool is_background(const FrameContext& frame, const TileVisibility& visibility, int block) {
+  if (!frame.raster) return false;
+  const uint32_t* triangles = visibility.triangle + block * kPacketSize;
+  return std::all_of(triangles, triangles + kPacketSize, [](uint32_t t) { return t == kNoTriangle; });
 }
 
 void primary_hits(const FrameContext& frame, const TileVisibility& visibility, int block, int x, int y,

@@ -96,6 +96,11 @@ uint64_t lanes_inside(const Rectangle& crop, int x, int y) {
   return lanes;
 }
 
+// Where the frame's pixel (x, y) lies in the pictures of the crop.
+size_t frame_pixel(const Rectangle& crop, int x, int y) {
+  return static_cast<size_t>(y - crop.y) * static_cast<size_t>(crop.width) + static_cast<size_t>(x - crop.x);
+}
+
 void write_aovs(const AovTargets& targets, const SurfacePacket& s, const LightDetail& light, int lane,
                 size_t pixel) {
   const auto put = [&](size_t index, const Vec3& value) {
@@ -112,6 +117,31 @@ void write_aovs(const AovTargets& targets, const SurfacePacket& s, const LightDe
   put(8, {light.ao[lane], 0, 0});
 }
 
+// Moves the tile's colours to the frame. Neighbours are often of one colour, which is encoded once.
+void resolve_tile(const Rectangle& crop, int tile_x, int tile_y, Worker& worker, Frame& out,
+                  const AovTargets& targets) {
+  const PassTimer timer(worker.tally, Pass::resolve);
+  const int x0 = std::max(tile_x, crop.x), x1 = std::min(tile_x + kTileSide, crop.x + crop.width);
+  const int y0 = std::max(tile_y, crop.y), y1 = std::min(tile_y + kTileSide, crop.y + crop.height);
+  Vec3 last{0, 0, 0};
+  Rgb8 code;
+  for (int y = y0; y < y1; ++y) {
+    for (int x = x0; x < x1; ++x) {
+      const size_t here = static_cast<size_t>((y - tile_y) * kTileSide + (x - tile_x));
+      const size_t there = frame_pixel(crop, x, y);
+      Vec3& color = worker.color[here];
+      if (!(color == last)) {
+        code = encode_pixel(color, worker.not_finite);
+        last = color;
+      }
+      out.pixels.pixels[there] = code;
+      if (!out.radiance.pixels.empty()) out.radiance.pixels[there] = color;
+      if (targets.by_index[9]) targets.by_index[9]->pixels.pixels[there] = worker.reflection[here];
+      if (targets.by_index[10]) targets.by_index[10]->pixels.pixels[there] = worker.refraction[here];
+    }
+  }
+}
+
 // Carries one tile through all passes while it is in cache.
 void render_tile(const FrameContext& frame, const Rectangle& crop, int tile_x, int tile_y, Worker& worker,
                  Frame& out, const AovTargets& targets) {
@@ -124,16 +154,11 @@ void render_tile(const FrameContext& frame, const Rectangle& crop, int tile_x, i
   }
   worker.paths.current.clear();
   rasterize_tile(frame, tile_x, tile_y, worker.tally, worker.visibility);
-  const auto frame_pixel = [&](int x, int y) {
-    return static_cast<size_t>(y - crop.y) * static_cast<size_t>(crop.width) +
-           static_cast<size_t>(x - crop.x);
-  };
-
   for (int block = 0; block < kTileBlocks; ++block) {
     const int x = tile_x + block % kTileBlocksAcross * kBlockSide,
               y = tile_y + block / kTileBlocksAcross * kBlockSide;
     const uint64_t lanes = lanes_inside(crop, x, y);
-    if (lanes == 0) continue;
+    if (lanes == 0 || is_background(frame, worker.visibility, block)) continue;
     RayPacket rays;
     HitPacket hits;
     SurfacePacket surfaces;
@@ -161,23 +186,13 @@ void render_tile(const FrameContext& frame, const Rectangle& crop, int tile_x, i
       worker.color[camera_paths[lane].pixel] = light.color[lane];
       if (targets.any)
         write_aovs(targets, surfaces, detail, lane,
-                   frame_pixel(x + lane % kBlockSide, y + lane / kBlockSide));
+                   frame_pixel(crop, x + lane % kBlockSide, y + lane / kBlockSide));
     }
     spawn_paths(frame, surfaces, camera_paths, worker.paths.current);
   }
   trace_paths(frame, worker.paths, worker.tally, sums);
 
-  const PassTimer timer(worker.tally, Pass::resolve);
-  for (int y = std::max(tile_y, crop.y); y < std::min(tile_y + kTileSide, crop.y + crop.height); ++y) {
-    for (int x = std::max(tile_x, crop.x); x < std::min(tile_x + kTileSide, crop.x + crop.width); ++x) {
-      const size_t here = static_cast<size_t>((y - tile_y) * kTileSide + (x - tile_x)),
-                   there = frame_pixel(x, y);
-      out.pixels.pixels[there] = encode_pixel(worker.color[here], worker.not_finite);
-      out.radiance.pixels[there] = worker.color[here];
-      if (targets.by_index[9]) targets.by_index[9]->pixels.pixels[there] = worker.reflection[here];
-      if (targets.by_index[10]) targets.by_index[10]->pixels.pixels[there] = worker.refraction[here];
-    }
-  }
+  resolve_tile(crop, tile_x, tile_y, worker, out, targets);
 }
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
@@ -225,7 +240,7 @@ Frame render_frame(const Scene& scene, const Accelerator& accelerator, const Cam
   }
 
   Frame out;
-  out.radiance = Image<Vec3>(crop.width, crop.height, scene.background);
+  if (settings.keep_radiance) out.radiance = Image<Vec3>(crop.width, crop.height);
   out.pixels = Image<Rgb8>(crop.width, crop.height);
   AovTargets targets;
   out.aovs.reserve(settings.aovs.size());

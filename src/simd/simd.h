@@ -36,15 +36,33 @@ using Int = int32_t;
 using Uint = uint32_t;
 using Mask = bool;
 
-static inline Float load(const float* p) { return *p; }
-static inline Int load(const int32_t* p) { return *p; }
-static inline Uint load(const uint32_t* p) { return *p; }
-static inline void store(float* p, Float v) { *p = v; }
-static inline void store(int32_t* p, Int v) { *p = v; }
-static inline void store(uint32_t* p, Uint v) { *p = v; }
-static inline uint32_t bits(Mask m) { return m ? 1u : 0u; }
-static inline Mask mask_of_bits(uint64_t b) { return (b & 1) != 0; }
-static inline Uint lane_numbers() { return 0; }
+static inline Float load(const float* p) {
+  return *p;
+}
+static inline Int load(const int32_t* p) {
+  return *p;
+}
+static inline Uint load(const uint32_t* p) {
+  return *p;
+}
+static inline void store(float* p, Float v) {
+  *p = v;
+}
+static inline void store(int32_t* p, Int v) {
+  *p = v;
+}
+static inline void store(uint32_t* p, Uint v) {
+  *p = v;
+}
+static inline uint32_t bits(Mask m) {
+  return m ? 1u : 0u;
+}
+static inline Mask mask_of_bits(uint64_t b) {
+  return (b & 1) != 0;
+}
+static inline Uint lane_numbers() {
+  return 0;
+}
 
 #else
 
@@ -86,11 +104,21 @@ struct Uint {
 struct Mask {
   __mmask16 v;
 };
-static inline uint32_t bits(Mask m) { return m.v; }
-static inline Mask mask_of_bits(uint64_t b) { return {static_cast<__mmask16>(b)}; }
-static inline Mask both(Mask a, Mask b) { return {static_cast<__mmask16>(a.v & b.v)}; }
-static inline Mask either(Mask a, Mask b) { return {static_cast<__mmask16>(a.v | b.v)}; }
-static inline Mask invert(Mask a) { return {static_cast<__mmask16>(~a.v)}; }
+static inline uint32_t bits(Mask m) {
+  return m.v;
+}
+static inline Mask mask_of_bits(uint64_t b) {
+  return {static_cast<__mmask16>(b)};
+}
+static inline Mask both(Mask a, Mask b) {
+  return {static_cast<__mmask16>(a.v & b.v)};
+}
+static inline Mask either(Mask a, Mask b) {
+  return {static_cast<__mmask16>(a.v | b.v)};
+}
+static inline Mask invert(Mask a) {
+  return {static_cast<__mmask16>(~a.v)};
+}
 static inline Float select(Mask m, Float yes, Float no) {
   return FloatVector(_mm512_mask_blend_ps(m.v, __m512(no.v), __m512(yes.v)));
 }
@@ -101,17 +129,18 @@ static inline Uint select(Mask m, Uint yes, Uint no) {
   return UintVector(_mm512_mask_blend_epi32(m.v, __m512i(no.v), __m512i(yes.v)));
 }
 static inline Double select(Mask m, const Double& yes, const Double& no) {
-  return {DoubleVector(_mm512_mask_blend_pd(static_cast<__mmask8>(m.v), __m512d(no.lo), __m512d(yes.lo))),
-          DoubleVector(_mm512_mask_blend_pd(static_cast<__mmask8>(m.v >> 8), __m512d(no.hi), __m512d(yes.hi)))};
+  return {
+      DoubleVector(_mm512_mask_blend_pd(static_cast<__mmask8>(m.v), __m512d(no.lo), __m512d(yes.lo))),
+      DoubleVector(_mm512_mask_blend_pd(static_cast<__mmask8>(m.v >> 8), __m512d(no.hi), __m512d(yes.hi)))};
 }
-#define VITRAL_COMPARE(op, predicate)                                                                           \
-  static inline Mask operator op(Float a, Float b) {                                                            \
-    return {_mm512_cmp_ps_mask(__m512(a.v), __m512(b.v), predicate)};                                           \
-  }                                                                                                             \
-  static inline Mask operator op(const Double& a, const Double& b) {                                            \
-    const unsigned lo = _mm512_cmp_pd_mask(__m512d(a.lo), __m512d(b.lo), predicate);                            \
-    const unsigned hi = _mm512_cmp_pd_mask(__m512d(a.hi), __m512d(b.hi), predicate);                            \
-    return {static_cast<__mmask16>(lo | hi << 8)};                                                              \
+#define VITRAL_COMPARE(op, predicate)                                                \
+  static inline Mask operator op(Float a, Float b) {                                 \
+    return {_mm512_cmp_ps_mask(__m512(a.v), __m512(b.v), predicate)};                \
+  }                                                                                  \
+  static inline Mask operator op(const Double& a, const Double& b) {                 \
+    const unsigned lo = _mm512_cmp_pd_mask(__m512d(a.lo), __m512d(b.lo), predicate); \
+    const unsigned hi = _mm512_cmp_pd_mask(__m512d(a.hi), __m512d(b.hi), predicate); \
+    return {static_cast<__mmask16>(lo | hi << 8)};                                   \
   }
 VITRAL_COMPARE(<, _CMP_LT_OQ)
 VITRAL_COMPARE(<=, _CMP_LE_OQ)
@@ -119,12 +148,12 @@ VITRAL_COMPARE(>, _CMP_GT_OQ)
 VITRAL_COMPARE(>=, _CMP_GE_OQ)
 VITRAL_COMPARE(==, _CMP_EQ_OQ)
 #undef VITRAL_COMPARE
-#define VITRAL_COMPARE(op, predicate)                                                                           \
-  static inline Mask operator op(Int a, Int b) {                                                                \
-    return {_mm512_cmp_epi32_mask(__m512i(a.v), __m512i(b.v), predicate)};                                      \
-  }                                                                                                             \
-  static inline Mask operator op(Uint a, Uint b) {                                                              \
-    return {_mm512_cmp_epu32_mask(__m512i(a.v), __m512i(b.v), predicate)};                                      \
+#define VITRAL_COMPARE(op, predicate)                                      \
+  static inline Mask operator op(Int a, Int b) {                           \
+    return {_mm512_cmp_epi32_mask(__m512i(a.v), __m512i(b.v), predicate)}; \
+  }                                                                        \
+  static inline Mask operator op(Uint a, Uint b) {                         \
+    return {_mm512_cmp_epu32_mask(__m512i(a.v), __m512i(b.v), predicate)}; \
   }
 VITRAL_COMPARE(<, _MM_CMPINT_LT)
 VITRAL_COMPARE(<=, _MM_CMPINT_LE)
@@ -152,12 +181,24 @@ static inline Mask mask_of_bits(uint64_t b) {
 #endif
   return {IntVector(((Uint(static_cast<uint32_t>(b)).v & lane) != 0))};
 }
-static inline Mask both(Mask a, Mask b) { return {a.v & b.v}; }
-static inline Mask either(Mask a, Mask b) { return {a.v | b.v}; }
-static inline Mask invert(Mask a) { return {~a.v}; }
-static inline Float select(Mask m, Float yes, Float no) { return m.v ? yes.v : no.v; }
-static inline Int select(Mask m, Int yes, Int no) { return m.v ? yes.v : no.v; }
-static inline Uint select(Mask m, Uint yes, Uint no) { return m.v ? yes.v : no.v; }
+static inline Mask both(Mask a, Mask b) {
+  return {a.v & b.v};
+}
+static inline Mask either(Mask a, Mask b) {
+  return {a.v | b.v};
+}
+static inline Mask invert(Mask a) {
+  return {~a.v};
+}
+static inline Float select(Mask m, Float yes, Float no) {
+  return m.v ? yes.v : no.v;
+}
+static inline Int select(Mask m, Int yes, Int no) {
+  return m.v ? yes.v : no.v;
+}
+static inline Uint select(Mask m, Uint yes, Uint no) {
+  return m.v ? yes.v : no.v;
+}
 typedef int32_t HalfIntVector __attribute__((vector_size(2 * LANES)));
 static inline Double select(Mask m, const Double& yes, const Double& no) {
   HalfIntVector half[2];
@@ -173,12 +214,18 @@ static inline Mask join(LongVector lo, LongVector hi) {
   std::memcpy(&m.v, half, sizeof m.v);
   return m;
 }
-#define VITRAL_COMPARE(op)                                                                                      \
-  static inline Mask operator op(Float a, Float b) { return {IntVector(a.v op b.v)}; }                          \
-  static inline Mask operator op(Int a, Int b) { return {IntVector(a.v op b.v)}; }                              \
-  static inline Mask operator op(Uint a, Uint b) { return {IntVector(a.v op b.v)}; }                            \
-  static inline Mask operator op(const Double& a, const Double& b) {                                            \
-    return join(LongVector(a.lo op b.lo), LongVector(a.hi op b.hi));                                            \
+#define VITRAL_COMPARE(op)                                           \
+  static inline Mask operator op(Float a, Float b) {                 \
+    return {IntVector(a.v op b.v)};                                  \
+  }                                                                  \
+  static inline Mask operator op(Int a, Int b) {                     \
+    return {IntVector(a.v op b.v)};                                  \
+  }                                                                  \
+  static inline Mask operator op(Uint a, Uint b) {                   \
+    return {IntVector(a.v op b.v)};                                  \
+  }                                                                  \
+  static inline Mask operator op(const Double& a, const Double& b) { \
+    return join(LongVector(a.lo op b.lo), LongVector(a.hi op b.hi)); \
   }
 VITRAL_COMPARE(<)
 VITRAL_COMPARE(<=)
@@ -188,12 +235,16 @@ VITRAL_COMPARE(==)
 #undef VITRAL_COMPARE
 #endif
 
-static inline bool any(Mask m) { return bits(m) != 0; }
+static inline bool any(Mask m) {
+  return bits(m) != 0;
+}
 
 // --- arithmetic ----------------------------------------------------------------------------------
 
-#define VITRAL_BINARY(type, op) \
-  static inline type operator op(type a, type b) { return a.v op b.v; }
+#define VITRAL_BINARY(type, op)                    \
+  static inline type operator op(type a, type b) { \
+    return a.v op b.v;                             \
+  }
 VITRAL_BINARY(Float, +)
 VITRAL_BINARY(Float, -)
 VITRAL_BINARY(Float, *)
@@ -208,24 +259,42 @@ VITRAL_BINARY(Int, &)
 VITRAL_BINARY(Int, |)
 VITRAL_BINARY(Int, ^)
 #undef VITRAL_BINARY
-#define VITRAL_BINARY(op) \
-  static inline Double operator op(const Double& a, const Double& b) { return {a.lo op b.lo, a.hi op b.hi}; }
+#define VITRAL_BINARY(op)                                              \
+  static inline Double operator op(const Double& a, const Double& b) { \
+    return {a.lo op b.lo, a.hi op b.hi};                               \
+  }
 VITRAL_BINARY(+)
 VITRAL_BINARY(-)
 VITRAL_BINARY(*)
 VITRAL_BINARY(/)
 #undef VITRAL_BINARY
 
-static inline Float operator-(Float a) { return -a.v; }
-static inline Double operator-(const Double& a) { return {-a.lo, -a.hi}; }
+static inline Float operator-(Float a) {
+  return -a.v;
+}
+static inline Double operator-(const Double& a) {
+  return {-a.lo, -a.hi};
+}
 
 // Signed sums and products wrap around, as the unsigned ones do.
-static inline Int operator+(Int a, Int b) { return IntVector(UintVector(a.v) + UintVector(b.v)); }
-static inline Int operator-(Int a, Int b) { return IntVector(UintVector(a.v) - UintVector(b.v)); }
-static inline Int operator*(Int a, Int b) { return IntVector(UintVector(a.v) * UintVector(b.v)); }
-static inline Uint operator<<(Uint a, int n) { return a.v << n; }
-static inline Uint operator>>(Uint a, int n) { return a.v >> n; }  // logical
-static inline Int operator>>(Int a, int n) { return a.v >> n; }    // arithmetic
+static inline Int operator+(Int a, Int b) {
+  return IntVector(UintVector(a.v) + UintVector(b.v));
+}
+static inline Int operator-(Int a, Int b) {
+  return IntVector(UintVector(a.v) - UintVector(b.v));
+}
+static inline Int operator*(Int a, Int b) {
+  return IntVector(UintVector(a.v) * UintVector(b.v));
+}
+static inline Uint operator<<(Uint a, int n) {
+  return a.v << n;
+}
+static inline Uint operator>>(Uint a, int n) {
+  return a.v >> n;
+}  // logical
+static inline Int operator>>(Int a, int n) {
+  return a.v >> n;
+}  // arithmetic
 
 // a < b ? a : b and a > b ? a : b: what the x86 instruction does, NaN included.
 static inline Float least(Float a, Float b) {
@@ -258,16 +327,28 @@ static inline Float square_root(Float a) {
 
 // --- conversions, memory -------------------------------------------------------------------------
 
-static inline Uint as_bits(Float a) { return UintVector(a.v); }
-static inline Float from_bits(Uint a) { return FloatVector(a.v); }
-static inline Float absolute(Float a) { return from_bits(as_bits(a) & Uint(0x7fffffffu)); }
+static inline Uint as_bits(Float a) {
+  return UintVector(a.v);
+}
+static inline Float from_bits(Uint a) {
+  return FloatVector(a.v);
+}
+static inline Float absolute(Float a) {
+  return from_bits(as_bits(a) & Uint(0x7fffffffu));
+}
 static inline Float copy_sign(Float magnitude, Float sign) {
   return from_bits((as_bits(magnitude) & Uint(0x7fffffffu)) | (as_bits(sign) & Uint(0x80000000u)));
 }
-static inline Float to_float(Int a) { return __builtin_convertvector(a.v, FloatVector); }
+static inline Float to_float(Int a) {
+  return __builtin_convertvector(a.v, FloatVector);
+}
 // Exact below 2^31, which is all that is ever asked of it.
-static inline Float to_float(Uint a) { return to_float(Int(IntVector(a.v))); }
-static inline Int to_int(Float a) { return __builtin_convertvector(a.v, IntVector); }  // towards zero; |a| < 2^31
+static inline Float to_float(Uint a) {
+  return to_float(Int(IntVector(a.v)));
+}
+static inline Int to_int(Float a) {
+  return __builtin_convertvector(a.v, IntVector);
+}  // towards zero; |a| < 2^31
 
 static inline Double widen(Float a) {
   HalfFloatVector half[2];
@@ -288,12 +369,24 @@ static inline V load_vector(const T* p) {
   std::memcpy(&v, p, sizeof v);
   return v;
 }
-static inline Float load(const float* p) { return load_vector<FloatVector>(p); }
-static inline Int load(const int32_t* p) { return load_vector<IntVector>(p); }
-static inline Uint load(const uint32_t* p) { return load_vector<UintVector>(p); }
-static inline void store(float* p, Float a) { std::memcpy(p, &a.v, sizeof a.v); }
-static inline void store(int32_t* p, Int a) { std::memcpy(p, &a.v, sizeof a.v); }
-static inline void store(uint32_t* p, Uint a) { std::memcpy(p, &a.v, sizeof a.v); }
+static inline Float load(const float* p) {
+  return load_vector<FloatVector>(p);
+}
+static inline Int load(const int32_t* p) {
+  return load_vector<IntVector>(p);
+}
+static inline Uint load(const uint32_t* p) {
+  return load_vector<UintVector>(p);
+}
+static inline void store(float* p, Float a) {
+  std::memcpy(p, &a.v, sizeof a.v);
+}
+static inline void store(int32_t* p, Int a) {
+  std::memcpy(p, &a.v, sizeof a.v);
+}
+static inline void store(uint32_t* p, Uint a) {
+  std::memcpy(p, &a.v, sizeof a.v);
+}
 
 // 0, 1, 2, ... LANES-1
 static inline Uint lane_numbers() {
