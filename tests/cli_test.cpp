@@ -236,6 +236,8 @@ TEST_F(Cli, ChecksTheOutputBeforeItLoads) {
 TEST_F(Cli, NoticesAFullDisk) {
   if (!fs::exists("/dev/full")) GTEST_SKIP() << "there is no /dev/full";
   expect_failure({"a.obj", "--size", "8x8", "-o", "/dev/full"}, 1, "/dev/full");
+  // The picture comes last: there is none when the statistics failed.
+  expect_failure({"a.obj", "--size", "8x8", "--stats", "/dev/full"}, 1, "/dev/full");
   const int full = open("/dev/full", O_WRONLY);
   ASSERT_GE(full, 0);
   for (const Words& words :

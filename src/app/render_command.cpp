@@ -3,6 +3,7 @@
 #include "app/progress.h"
 #include "io/file.h"
 #include "io/image_file.h"
+#include "io/png.h"
 
 #include <unistd.h>
 
@@ -65,15 +66,28 @@ void print_summary(const Outputs& outputs, const Frame& frame, const RunTimes& t
       in_words(times.write_seconds).c_str(), frame.stats.threads, frame.stats.isa.c_str());
 }
 
-// The picture comes last: when it is there, everything is.
-void write_outputs(const Outputs& outputs, const Frame& frame) {
+// The auxiliary pictures and the statistics; afterwards times.write_seconds covers all but the
+// writing of the picture, whose encoding took `encode_seconds`.
+void write_companions(const Outputs& outputs, const Frame& frame, const Job& job, double encode_seconds,
+                      RunTimes& times) {
+  const auto start = std::chrono::steady_clock::now();
   for (const auto& [name, path] : outputs.aovs) {
     const auto found = std::find_if(frame.aovs.begin(), frame.aovs.end(),
                                     [&, wanted = &name](const Aov& aov) { return aov.name == *wanted; });
     if (found == frame.aovs.end()) fail(path, "the renderer made no picture of this name");
     write_pfm(path, *found);
   }
-  write_png(outputs.png, frame.pixels);
+  times.write_seconds = encode_seconds + seconds_since(start);
+  if (!outputs.stats.empty()) write_file(outputs.stats, stats_json(job, frame.stats, times));
+}
+
+// The picture comes last: when it is there, everything is.
+void write_outputs(const Outputs& outputs, const Frame& frame, const Job& job, RunTimes& times) {
+  const auto start = std::chrono::steady_clock::now();
+  const std::string picture = encode_png(frame.pixels);
+  write_companions(outputs, frame, job, seconds_since(start), times);
+  write_file(outputs.png, picture);
+  times.write_seconds = seconds_since(start);
 }
 
 }  // namespace
@@ -105,10 +119,7 @@ int run_render(const Options& options) {
   }
   report_warnings(job.warnings, options);
 
-  const auto written = std::chrono::steady_clock::now();
-  write_outputs(outputs, frame);
-  times.write_seconds = seconds_since(written);
-  if (!outputs.stats.empty()) write_file(outputs.stats, stats_json(job, frame.stats, times));
+  write_outputs(outputs, frame, job, times);
   if (talks) print_summary(outputs, frame, times);
   return kDone;
 }
