@@ -11,6 +11,7 @@
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <utility>
 
@@ -42,16 +43,29 @@ Outputs outputs_of(const Options& options) {
   return outputs;
 }
 
+// The paths of one file give one path, whether or not the file is there yet.
+fs::path normal_form(const std::string& path) {
+  if (path == "-") return path;
+  const fs::path absolute = fs::absolute(path);
+  std::error_code code;
+  const fs::path canonical = fs::weakly_canonical(absolute, code);
+  return code ? absolute.lexically_normal() : canonical;
+}
+
 // No two outputs may be the same file, and none an input.
 void check_outputs(const Outputs& outputs, const Job& job) {
   std::vector<std::string> inputs{job.input};
   for (const MeshFile& mesh : job.project.meshes) inputs.push_back(mesh.path);
-  check_output(outputs.png, inputs);
-  for (const auto& [name, path] : outputs.aovs) check_output(path, inputs);
-  if (outputs.stats.empty()) return;
-  check_output(outputs.stats, inputs);
-  if (outputs.stats == outputs.png)
-    throw UsageError("--stats and the picture go to the same place: " + outputs.png);
+  std::vector<std::pair<std::string, std::string>> all{{"the picture", outputs.png}};  // what and path
+  for (const auto& [name, path] : outputs.aovs) all.emplace_back("--aov " + name, path);
+  if (!outputs.stats.empty()) all.emplace_back("--stats", outputs.stats);
+
+  std::map<fs::path, std::string> taken;
+  for (const auto& [what, path] : all) {
+    const auto [first, is_new] = taken.try_emplace(normal_form(path), what);
+    if (!is_new) throw UsageError(what + " and " + first->second + " go to the same place: " + path);
+  }
+  for (const auto& [what, path] : all) check_output(path, inputs);
 }
 
 void print_summary(const Outputs& outputs, const Frame& frame, const RunTimes& times) {
