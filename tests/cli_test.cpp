@@ -218,6 +218,17 @@ TEST_F(Cli, RefusesWrongUsage) {
   expect_failure({"nosuch.obj", "--size", "0x0"}, 2, "--size");
 }
 
+TEST_F(Cli, RefusesTwoOutputsInOneFile) {
+  expect_failure({"a.obj", "--stats", "a.png"}, 2, "same place");
+  expect_failure({"a.obj", "-o", "b.png", "--stats", "./b.png"}, 2, "same place");
+  expect_failure({"a.obj", "--aov", "depth", "--stats", "a.depth.pfm"}, 2, "same place");
+  expect_failure({"a.obj", "--aov", "depth,normal", "--stats", folder / "a.normal.pfm"}, 2, "same place");
+  expect_failure({"a.obj", "--aov", "depth", "-o", "b.png", "--stats", "x/../b.depth.pfm"}, 2, "same place");
+  folder.write("b.png", "an older picture");
+  fs::create_symlink("b.png", folder / "link.json");
+  expect_failure({"a.obj", "-o", "b.png", "--stats", "link.json"}, 2, "same place");
+}
+
 TEST_F(Cli, ChecksTheOutputBeforeItLoads) {
   fs::create_directory(folder / "folder");
   // The input does not parse: the complaint is about the output because that comes first.
@@ -236,6 +247,8 @@ TEST_F(Cli, ChecksTheOutputBeforeItLoads) {
 TEST_F(Cli, NoticesAFullDisk) {
   if (!fs::exists("/dev/full")) GTEST_SKIP() << "there is no /dev/full";
   expect_failure({"a.obj", "--size", "8x8", "-o", "/dev/full"}, 1, "/dev/full");
+  // The picture comes last: there is none when the statistics failed.
+  expect_failure({"a.obj", "--size", "8x8", "--stats", "/dev/full"}, 1, "/dev/full");
   const int full = open("/dev/full", O_WRONLY);
   ASSERT_GE(full, 0);
   for (const Words& words :

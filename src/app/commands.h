@@ -33,7 +33,8 @@ void check_output(const std::string& path, const std::vector<std::string>& input
 // Prints to standard output and makes sure that it arrived. Throws InputError.
 void print(std::string_view text);
 
-// What --stats writes.
+// What --stats writes. The time of writing includes the encoding, but in the statistics not the
+// writing of the picture, which comes after them.
 struct RunTimes {
   double load_seconds = 0, render_seconds = 0, write_seconds = 0;
 };

@@ -3,6 +3,7 @@
 #include "app/progress.h"
 #include "io/file.h"
 #include "io/image_file.h"
+#include "io/png.h"
 
 #include <unistd.h>
 
@@ -10,6 +11,7 @@
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <utility>
 
@@ -41,16 +43,29 @@ Outputs outputs_of(const Options& options) {
   return outputs;
 }
 
+// The paths of one file give one path, whether or not the file is there yet.
+fs::path normal_form(const std::string& path) {
+  if (path == "-") return path;
+  const fs::path absolute = fs::absolute(path);
+  std::error_code code;
+  const fs::path canonical = fs::weakly_canonical(absolute, code);
+  return code ? absolute.lexically_normal() : canonical;
+}
+
 // No two outputs may be the same file, and none an input.
 void check_outputs(const Outputs& outputs, const Job& job) {
   std::vector<std::string> inputs{job.input};
   for (const MeshFile& mesh : job.project.meshes) inputs.push_back(mesh.path);
-  check_output(outputs.png, inputs);
-  for (const auto& [name, path] : outputs.aovs) check_output(path, inputs);
-  if (outputs.stats.empty()) return;
-  check_output(outputs.stats, inputs);
-  if (outputs.stats == outputs.png)
-    throw UsageError("--stats and the picture go to the same place: " + outputs.png);
+  std::vector<std::pair<std::string, std::string>> all{{"the picture", outputs.png}};  // what and path
+  for (const auto& [name, path] : outputs.aovs) all.emplace_back("--aov " + name, path);
+  if (!outputs.stats.empty()) all.emplace_back("--stats", outputs.stats);
+
+  std::map<fs::path, std::string> taken;
+  for (const auto& [what, path] : all) {
+    const auto [first, is_new] = taken.try_emplace(normal_form(path), what);
+    if (!is_new) throw UsageError(what + " and " + first->second + " go to the same place: " + path);
+  }
+  for (const auto& [what, path] : all) check_output(path, inputs);
 }
 
 void print_summary(const Outputs& outputs, const Frame& frame, const RunTimes& times) {
@@ -65,15 +80,28 @@ void print_summary(const Outputs& outputs, const Frame& frame, const RunTimes& t
       in_words(times.write_seconds).c_str(), frame.stats.threads, frame.stats.isa.c_str());
 }
 
-// The picture comes last: when it is there, everything is.
-void write_outputs(const Outputs& outputs, const Frame& frame) {
+// The auxiliary pictures and the statistics; afterwards times.write_seconds covers all but the
+// writing of the picture, whose encoding took `encode_seconds`.
+void write_companions(const Outputs& outputs, const Frame& frame, const Job& job, double encode_seconds,
+                      RunTimes& times) {
+  const auto start = std::chrono::steady_clock::now();
   for (const auto& [name, path] : outputs.aovs) {
     const auto found = std::find_if(frame.aovs.begin(), frame.aovs.end(),
                                     [&, wanted = &name](const Aov& aov) { return aov.name == *wanted; });
     if (found == frame.aovs.end()) fail(path, "the renderer made no picture of this name");
     write_pfm(path, *found);
   }
-  write_png(outputs.png, frame.pixels);
+  times.write_seconds = encode_seconds + seconds_since(start);
+  if (!outputs.stats.empty()) write_file(outputs.stats, stats_json(job, frame.stats, times));
+}
+
+// The picture comes last: when it is there, everything is.
+void write_outputs(const Outputs& outputs, const Frame& frame, const Job& job, RunTimes& times) {
+  const auto start = std::chrono::steady_clock::now();
+  const std::string picture = encode_png(frame.pixels);
+  write_companions(outputs, frame, job, seconds_since(start), times);
+  write_file(outputs.png, picture);
+  times.write_seconds = seconds_since(start);
 }
 
 }  // namespace
@@ -105,10 +133,7 @@ int run_render(const Options& options) {
   }
   report_warnings(job.warnings, options);
 
-  const auto written = std::chrono::steady_clock::now();
-  write_outputs(outputs, frame);
-  times.write_seconds = seconds_since(written);
-  if (!outputs.stats.empty()) write_file(outputs.stats, stats_json(job, frame.stats, times));
+  write_outputs(outputs, frame, job, times);
   if (talks) print_summary(outputs, frame, times);
   return kDone;
 }
