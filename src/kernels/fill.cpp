@@ -97,12 +97,13 @@ inline bool find_crossing(const Edges& edges, int x, int y, Crossing& crossing) 
 }
 
 // Clears the pixels where a cut-out triangle is not there; the group's first pixel is (x, y).
-uint32_t keep_there(const RasterView& view, uint32_t number, int x, int y, uint32_t pixels) {
+uint32_t keep_there(const RasterView& view, const CutOuts& cut_outs, uint32_t number, int x, int y,
+                    uint32_t pixels) {
   for (int lane = 0; lane < kLanes; ++lane) {
     if (!(pixels >> lane & 1u)) continue;
     const auto point =
         visible_point(*view.camera, view.triangles[number], x + kLaneX[lane], y + kLaneY[lane]);
-    if (!view.cut_outs->is_there(view.cut_outs->scene, number, point.u, point.v)) pixels &= ~(1u << lane);
+    if (!cut_outs.is_there(cut_outs.scene, number, point.u, point.v)) pixels &= ~(1u << lane);
   }
   return pixels;
 }
@@ -124,8 +125,9 @@ void update_least(Tile& tile, int block) {
   }
 }
 
-// Fills rows [y0, y1) of a block whose corner is the pixel (x, y) of the frame.
-void fill_block(const RasterView& view, uint32_t number, bool is_cut_out, const Crossing& crossing,
+// Fills rows [y0, y1) of a block whose corner is the pixel (x, y) of the frame. `cut_outs` is null for
+// a triangle without holes.
+void fill_block(const RasterView& view, uint32_t number, const CutOuts* cut_outs, const Crossing& crossing,
                 const DepthPlane& plane, int x, int y, int y0, int y1, Tile& tile, int block) {
   float* depths = tile.seen->inverse_depth + block * kPacketSize;
   uint32_t* numbers = tile.seen->triangle + block * kPacketSize;
@@ -147,8 +149,8 @@ void fill_block(const RasterView& view, uint32_t number, bool is_cut_out, const 
       wins = both(wins, Int(value) + crossing.lanes[k] >= Int(0));
     }
     uint32_t won = bits(wins);
-    if (won != 0 && is_cut_out) {
-      won = keep_there(view, number, x + gx, y + gy, won);
+    if (won != 0 && cut_outs != nullptr) {
+      won = keep_there(view, *cut_outs, number, x + gx, y + gy, won);
       wins = mask_of_bits(won);
     }
     if (won == 0) continue;
@@ -176,6 +178,7 @@ void fill_triangle(const RasterView& view, const SetupTriangle& t, Tile& tile) {
   }
   const bool is_cut_out =
       view.cut_outs != nullptr && (view.triangles[t.triangle].flags & kCutOutTriangle) != 0;
+  const CutOuts* const cut_outs = is_cut_out ? view.cut_outs : nullptr;
 
   for (int by = box.y0 & -kBlockSide; by < box.y1; by += kBlockSide) {
     for (int bx = box.x0 & -kBlockSide; bx < box.x1; bx += kBlockSide) {
@@ -186,8 +189,7 @@ void fill_triangle(const RasterView& view, const SetupTriangle& t, Tile& tile) {
       if (greatest_in_block(plane) < tile.least[block]) continue;
       const int y0 = box.y0 > by ? box.y0 - by : 0;
       const int y1 = box.y1 < by + kBlockSide ? box.y1 - by : kBlockSide;
-      fill_block(view, t.triangle, is_cut_out, crossing, plane, tile.x + bx, tile.y + by, y0, y1, tile,
-                 block);
+      fill_block(view, t.triangle, cut_outs, crossing, plane, tile.x + bx, tile.y + by, y0, y1, tile, block);
     }
   }
 }

@@ -5,6 +5,10 @@
 
 namespace vitral {
 
+// Throw UsageError when something is out of its range.
+void check_settings(const Settings& settings);
+void check_camera(const Camera& camera);
+
 Frame render_frame(const Scene& scene, const Accelerator& accelerator, const Camera& camera,
                    const Settings& settings, ThreadPool& pool, Control& control);
 

@@ -1,0 +1,112 @@
+#include "render/tile.h"
+
+#include "math/random.h"
+
+#include <algorithm>
+
+namespace vitral {
+namespace {
+
+constexpr size_t kTilePixels = static_cast<size_t>(kTileSide) * kTileSide;
+
+// The lanes of the block at (x, y) that lie in the crop.
+uint64_t lanes_inside(const Rectangle& crop, int x, int y) {
+  if (x >= crop.x && y >= crop.y && x + kBlockSide <= crop.x + crop.width &&
+      y + kBlockSide <= crop.y + crop.height)
+    return ~0ull;
+  uint64_t lanes = 0;
+  for (int lane = 0; lane < kPacketSize; ++lane) {
+    const int px = x + lane % kBlockSide, py = y + lane / kBlockSide;
+    if (px >= crop.x && px < crop.x + crop.width && py >= crop.y && py < crop.y + crop.height)
+      lanes |= 1ull << lane;
+  }
+  return lanes;
+}
+
+// Where the frame's pixel (x, y) lies in the pictures of the crop.
+size_t frame_pixel(const Rectangle& crop, int x, int y) {
+  return static_cast<size_t>(y - crop.y) * static_cast<size_t>(crop.width) + static_cast<size_t>(x - crop.x);
+}
+
+// Moves the tile's colours to the frame. Neighbours are often of one colour, which is encoded once.
+void resolve_tile(const Rectangle& crop, int tile_x, int tile_y, Worker& worker, Frame& out,
+                  const AovTargets& targets) {
+  const PassTimer timer(worker.tally, Pass::resolve);
+  const int x0 = std::max(tile_x, crop.x), x1 = std::min(tile_x + kTileSide, crop.x + crop.width);
+  const int y0 = std::max(tile_y, crop.y), y1 = std::min(tile_y + kTileSide, crop.y + crop.height);
+  Vec3 last{0, 0, 0};
+  Rgb8 code;
+  for (int y = y0; y < y1; ++y) {
+    for (int x = x0; x < x1; ++x) {
+      const size_t here = static_cast<size_t>((y - tile_y) * kTileSide + (x - tile_x));
+      const size_t there = frame_pixel(crop, x, y);
+      Vec3& color = worker.color[here];
+      if (!(color == last)) {
+        code = encode_pixel(color, worker.not_finite);
+        last = color;
+      }
+      out.pixels.pixels[there] = code;
+      if (!out.radiance.pixels.empty()) out.radiance.pixels[there] = color;
+      if (Aov* aov = target(targets, AovKind::reflection))
+        aov->pixels.pixels[there] = worker.reflection[here];
+      if (Aov* aov = target(targets, AovKind::refraction))
+        aov->pixels.pixels[there] = worker.refraction[here];
+    }
+  }
+}
+
+}  // namespace
+
+void render_tile(const FrameContext& frame, const Rectangle& crop, int tile_x, int tile_y, Worker& worker,
+                 Frame& out, const AovTargets& targets) {
+  worker.color.assign(kTilePixels, frame.scene.background);
+  PathSums sums{worker.color.data(), nullptr, nullptr};
+  if (targets.any) {
+    worker.reflection.assign(kTilePixels, Vec3{0, 0, 0});
+    worker.refraction.assign(kTilePixels, Vec3{0, 0, 0});
+    sums = {worker.color.data(), worker.reflection.data(), worker.refraction.data()};
+  }
+  worker.paths.current.clear();
+  rasterize_tile(frame, tile_x, tile_y, worker.tally, worker.visibility);
+  for (int block = 0; block < kTileBlocks; ++block) {
+    const int x = tile_x + block % kTileBlocksAcross * kBlockSide,
+              y = tile_y + block / kTileBlocksAcross * kBlockSide;
+    const uint64_t lanes = lanes_inside(crop, x, y);
+    if (lanes == 0 || is_background(frame, worker.visibility, block)) continue;
+    RayPacket rays;
+    HitPacket hits;
+    SurfacePacket surfaces;
+    primary_hits(frame, worker.visibility, block, x, y, lanes, worker.tally, rays, hits);
+    {
+      const PassTimer timer(worker.tally, Pass::shade);
+      make_surfaces(frame.scene, rays, hits, lanes, surfaces);
+    }
+    if (surfaces.points.live == 0) continue;
+    Path camera_paths[kPacketSize];
+    for (int lane = 0; lane < kPacketSize; ++lane) {
+      const int px = x + lane % kBlockSide, py = y + lane / kBlockSide;
+      surfaces.points.key[lane] = pixel_key(px, py, frame.settings.seed);
+      camera_paths[lane] = {};
+      camera_paths[lane].weight = {1, 1, 1};
+      camera_paths[lane].key = surfaces.points.key[lane];
+      camera_paths[lane].pixel = static_cast<uint16_t>((py - tile_y) * kTileSide + (px - tile_x));
+    }
+    ColorPacket light;
+    LightDetail detail;
+    light_surfaces(frame, surfaces, worker.tally, light, detail);
+    for (int lane = 0; lane < kPacketSize; ++lane) {
+      if (!(surfaces.points.live >> lane & 1)) continue;
+      ++worker.covered;
+      worker.color[camera_paths[lane].pixel] = light.color[lane];
+      if (targets.any)
+        write_aovs(targets, surfaces, detail, lane,
+                   frame_pixel(crop, x + lane % kBlockSide, y + lane / kBlockSide));
+    }
+    spawn_paths(frame, surfaces, camera_paths, worker.paths.current);
+  }
+  trace_paths(frame, worker.paths, worker.tally, sums);
+
+  resolve_tile(crop, tile_x, tile_y, worker, out, targets);
+}
+
+}  // namespace vitral

@@ -1,0 +1,24 @@
+// One tile through all passes.
+#pragma once
+#include "render/aov.h"
+#include "render/frame.h"
+
+#include <vector>
+
+namespace vitral {
+
+// A worker's own memory, kept from tile to tile.
+struct Worker {
+  PassTally tally;
+  TileVisibility visibility;
+  PathScratch paths;
+  std::vector<Vec3> color, reflection, refraction;  // of the tile
+  uint64_t covered = 0, not_finite = 0;
+};
+
+// Carries one tile through all passes while it is in cache. (tile_x, tile_y) is its corner's pixel in
+// the frame; only pixels of the crop are rendered, into the pictures of `out`.
+void render_tile(const FrameContext& frame, const Rectangle& crop, int tile_x, int tile_y, Worker& worker,
+                 Frame& out, const AovTargets& targets);
+
+}  // namespace vitral
