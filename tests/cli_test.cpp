@@ -329,6 +329,51 @@ TEST_F(Cli, StopsWhenInterrupted) {
   EXPECT_EQ(folder.files(), files) << "a file was left behind";
 }
 
+TEST_F(Cli, StopsInOrderWhenInterruptedTwice) {
+  folder.write("sheet.obj", wavy_sheet(40));
+  const Words long_work{"sheet.obj", "--size", "4096x4096", "--ao-samples", "1024"};
+  const size_t files = folder.files();
+  Terminal terminal;
+  ASSERT_GE(terminal.theirs, 0);
+  test::Process process(program, long_work, folder.path(), -1, terminal.theirs);
+  ASSERT_TRUE(terminal.wait_for("%")) << terminal.seen;
+  process.interrupt();
+  std::this_thread::sleep_for(std::chrono::microseconds(200));
+  process.interrupt();
+  EXPECT_EQ(process.wait().code, 130);
+  EXPECT_TRUE(terminal.wait_for("vitral: interrupted")) << terminal.seen;
+  EXPECT_EQ(folder.files(), files) << "a file was left behind";
+}
+
+// Whether a file of a temporary name is in the folder.
+bool has_temporary(const fs::path& folder) {
+  std::error_code code;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, code)) {
+    if (entry.path().extension() == ".tmp") return true;
+  }
+  return false;
+}
+
+TEST_F(Cli, FinishesTheFileItWritesWhenInterruptedTwice) {
+  // A file is written for a moment when the folder is tried, and longer when there is a large picture.
+  for (int round = 0; round < 6; ++round) {
+    const Words words{"a.obj", "--size", round % 2 == 0 ? "16x16" : "1024x1024", "--aov", "normal,depth"};
+    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(30);
+    test::Process process(program, words, folder.path());
+    while (!has_temporary(folder.path()) && !fs::exists(folder / "a.png")) {
+      ASSERT_LT(std::chrono::steady_clock::now(), end);
+    }
+    process.interrupt();
+    std::this_thread::sleep_for(std::chrono::microseconds(200));
+    process.interrupt();
+    const Finished done = process.wait();
+    EXPECT_FALSE(has_temporary(folder.path()));
+    // A busy machine may let it come to its end before it is interrupted.
+    EXPECT_EQ(done.code, fs::exists(folder / "a.png") ? 0 : 130) << done.err;
+    fs::remove(folder / "a.png");
+  }
+}
+
 TEST_F(Cli, ShowsABarAndASummaryOnATerminal) {
   Terminal terminal;
   ASSERT_GE(terminal.theirs, 0);
