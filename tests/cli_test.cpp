@@ -158,6 +158,10 @@ TEST_F(Cli, HelpAndVersionGoToStandardOutput) {
   }
 }
 
+TEST_F(Cli, HelpNamesTheLeastImportance) {
+  EXPECT_NE(run({"help", "render"}).out.find("counts as 1/4096"), std::string::npos);
+}
+
 TEST_F(Cli, AnswersBadInputWithOneLine) {
   folder.write("empty.obj", "");
   folder.write("empty.ply", "");
