@@ -206,6 +206,21 @@ TEST_F(Cli, GoesOnWithoutWhatAMaterialLacks) {
   }
 }
 
+TEST_F(Cli, ShowsTinyMeshesOrSaysThatItCannot) {
+  const auto tetrahedron = [](const std::string& size) {
+    return "v 0 0 0\nv " + size + " 0 0\nv 0 " + size + " 0\nv 0 0 " + size +
+           "\nf 1 2 3\nf 1 3 4\nf 1 4 2\nf 2 3 4\n";
+  };
+  for (const char* size : {"1e-25", "1e-30"}) {
+    folder.write("tiny.obj", tetrahedron(size));
+    const Finished done = run({"tiny.obj", "--size", "32x32", "--stats", "-"});
+    EXPECT_EQ(done.code, 0) << size << ": " << done.err;
+    EXPECT_EQ(done.out.find("\"covered_pixels\": 0,"), std::string::npos) << size;
+  }
+  folder.write("tinier.obj", tetrahedron("1e-38"));
+  expect_failure({"tinier.obj"}, 1, "tinier.obj: the mesh is too small");
+}
+
 TEST_F(Cli, RefusesWrongUsage) {
   expect_failure({}, 2, "no input");
   expect_failure({"a.obj", "--size", "0x0"}, 2, "--size");
