@@ -217,7 +217,7 @@ TEST_F(Cli, ShowsTinyMeshesOrSaysThatItCannot) {
     EXPECT_EQ(done.code, 0) << size << ": " << done.err;
     EXPECT_EQ(done.out.find("\"covered_pixels\": 0,"), std::string::npos) << size;
   }
-  folder.write("tinier.obj", tetrahedron("1e-38"));
+  folder.write("tinier.obj", tetrahedron("1e-31"));
   expect_failure({"tinier.obj"}, 1, "tinier.obj: the mesh is too small");
 }
 

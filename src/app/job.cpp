@@ -106,7 +106,7 @@ void find_view(Job& job, const Options& options) {
   Settings& settings = job.pipeline.settings;
   const float aspect = static_cast<float>(settings.width) / static_cast<float>(settings.height);
   // Products of edges and distances must not vanish among the floats.
-  constexpr double kLeastDiagonal = 1e-31;
+  constexpr double kLeastDiagonal = 1e-30;
   const Box box = bounds(scene.mesh);
   const double diagonal = length(to_double(box.max) - to_double(box.min));
   if (diagonal > 0 && diagonal < kLeastDiagonal)
