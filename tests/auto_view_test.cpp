@@ -120,6 +120,19 @@ TEST(AutoView, SinglePointsAreSeenToo) {
   }
 }
 
+TEST(AutoView, TinyMeshesHaveCamerasToo) {
+  for (const float scale : {1e-25f, 1e-30f}) {
+    const std::vector<View> views =
+        candidate_views(box_mesh({Vec3{-1, -1, -1} * scale, Vec3{1, 1, 1} * scale}), 1, {});
+    EXPECT_GT(views.size(), 5u) << "inside, too";
+    for (const View& view : views) {
+      EXPECT_EQ(camera_fault(view.camera), "");
+      EXPECT_NEAR(length(view.camera.view), 1, 0.1);
+      EXPECT_GT(view.camera.near, 0);
+    }
+  }
+}
+
 TEST(AutoView, WishesAreKept) {
   const Box box{{-1, -1, -1}, {1, 1, 1}};
   ViewWishes wishes;

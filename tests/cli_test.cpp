@@ -158,6 +158,10 @@ TEST_F(Cli, HelpAndVersionGoToStandardOutput) {
   }
 }
 
+TEST_F(Cli, HelpNamesTheLeastImportance) {
+  EXPECT_NE(run({"help", "render"}).out.find("counts as 1/4096"), std::string::npos);
+}
+
 TEST_F(Cli, AnswersBadInputWithOneLine) {
   folder.write("empty.obj", "");
   folder.write("empty.ply", "");
@@ -200,6 +204,21 @@ TEST_F(Cli, GoesOnWithoutWhatAMaterialLacks) {
     EXPECT_EQ(read_png(folder / (std::string(name) + ".png")).width, 8);
     EXPECT_EQ(run({std::string(name) + ".obj", "--size", "8x8", "--quiet"}).err, "");
   }
+}
+
+TEST_F(Cli, ShowsTinyMeshesOrSaysThatItCannot) {
+  const auto tetrahedron = [](const std::string& size) {
+    return "v 0 0 0\nv " + size + " 0 0\nv 0 " + size + " 0\nv 0 0 " + size +
+           "\nf 1 2 3\nf 1 3 4\nf 1 4 2\nf 2 3 4\n";
+  };
+  for (const char* size : {"1e-25", "1e-30"}) {
+    folder.write("tiny.obj", tetrahedron(size));
+    const Finished done = run({"tiny.obj", "--size", "32x32", "--stats", "-"});
+    EXPECT_EQ(done.code, 0) << size << ": " << done.err;
+    EXPECT_EQ(done.out.find("\"covered_pixels\": 0,"), std::string::npos) << size;
+  }
+  folder.write("tinier.obj", tetrahedron("1e-31"));
+  expect_failure({"tinier.obj"}, 1, "tinier.obj: the mesh is too small");
 }
 
 TEST_F(Cli, RefusesWrongUsage) {
@@ -327,6 +346,51 @@ TEST_F(Cli, StopsWhenInterrupted) {
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
   EXPECT_TRUE(terminal.wait_for("vitral: interrupted")) << terminal.seen;
   EXPECT_EQ(folder.files(), files) << "a file was left behind";
+}
+
+TEST_F(Cli, StopsInOrderWhenInterruptedTwice) {
+  folder.write("sheet.obj", wavy_sheet(40));
+  const Words long_work{"sheet.obj", "--size", "4096x4096", "--ao-samples", "1024"};
+  const size_t files = folder.files();
+  Terminal terminal;
+  ASSERT_GE(terminal.theirs, 0);
+  test::Process process(program, long_work, folder.path(), -1, terminal.theirs);
+  ASSERT_TRUE(terminal.wait_for("%")) << terminal.seen;
+  process.interrupt();
+  std::this_thread::sleep_for(std::chrono::microseconds(200));
+  process.interrupt();
+  EXPECT_EQ(process.wait().code, 130);
+  EXPECT_TRUE(terminal.wait_for("vitral: interrupted")) << terminal.seen;
+  EXPECT_EQ(folder.files(), files) << "a file was left behind";
+}
+
+// Whether a file of a temporary name is in the folder.
+bool has_temporary(const fs::path& folder) {
+  std::error_code code;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, code)) {
+    if (entry.path().extension() == ".tmp") return true;
+  }
+  return false;
+}
+
+TEST_F(Cli, FinishesTheFileItWritesWhenInterruptedTwice) {
+  // A file is written for a moment when the folder is tried, and longer when there is a large picture.
+  for (int round = 0; round < 6; ++round) {
+    const Words words{"a.obj", "--size", round % 2 == 0 ? "16x16" : "1024x1024", "--aov", "normal,depth"};
+    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(30);
+    test::Process process(program, words, folder.path());
+    while (!has_temporary(folder.path()) && !fs::exists(folder / "a.png")) {
+      ASSERT_LT(std::chrono::steady_clock::now(), end);
+    }
+    process.interrupt();
+    std::this_thread::sleep_for(std::chrono::microseconds(200));
+    process.interrupt();
+    const Finished done = process.wait();
+    EXPECT_FALSE(has_temporary(folder.path()));
+    // A busy machine may let it come to its end before it is interrupted.
+    EXPECT_EQ(done.code, fs::exists(folder / "a.png") ? 0 : 130) << done.err;
+    fs::remove(folder / "a.png");
+  }
 }
 
 TEST_F(Cli, ShowsABarAndASummaryOnATerminal) {

@@ -104,7 +104,8 @@ void enclose(const Box& bounds, double scale, Camera& camera, const ViewWishes& 
     furthest = std::max(furthest, depth);
   }
   constexpr double kLeastNear = 5e-4;  // of the scale
-  const double near = std::max(nearest * 0.5, scale * kLeastNear);
+  const double near =
+      std::max({nearest * 0.5, scale * kLeastNear, static_cast<double>(std::numeric_limits<float>::min())});
   camera.near = wishes.near.value_or(static_cast<float>(near));
   const double far = std::max(furthest * 1.1, 2.0 * static_cast<double>(camera.near));
   camera.far = wishes.far.value_or(static_cast<float>(far));
@@ -194,8 +195,8 @@ std::vector<View> candidate_views(const Mesh& mesh, float aspect, const ViewWish
   for (const float height : {0.3f, 0.5f}) {
     for (const Vec3& way : {Vec3{1, 0, 0}, Vec3{-1, 0, 0}, Vec3{0, 0, 1}, Vec3{0, 0, -1}, Vec3{1, 0, 1},
                             Vec3{-1, 0, 1}, Vec3{1, 0, -1}, Vec3{-1, 0, -1}}) {
-      Camera camera =
-          aimed_camera(normalize(way * size + Vec3{0, -0.08f, 0} * length(way * size)), kInsideFov, wishes);
+      const Vec3d level = normalize(to_double(way) * to_double(size));  // in floats, squares may vanish
+      Camera camera = aimed_camera(to_float(normalize(level + Vec3d{0, -0.08, 0})), kInsideFov, wishes);
       camera.position = middle_of_core - way * size * kFromMiddle;
       camera.position.y = box.min.y + size.y * height;
       enclose(whole, scale, camera, wishes);

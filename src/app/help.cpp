@@ -44,7 +44,8 @@ constexpr const char* kEnd =
     "--name=value and --name value are the same; -- ends the options. Warnings go to standard error.\n"
     "When that is a terminal, so do a progress bar and a one-line summary; otherwise a run that\n"
     "succeeds says nothing.\n"
-    "Exit code: 0 done, 1 input or output failed, 2 wrong usage, 130 interrupted.\n";
+    "Exit code: 0 done, 1 input or output failed, 2 wrong usage, 130 interrupted.\n"
+    "An interruption (Ctrl-C) leaves no half-written file behind.\n";
 
 // The options of some commands, under the headings of their groups.
 std::string options_of(unsigned commands) {

@@ -15,7 +15,8 @@ static_assert(std::atomic<std::atomic<bool>*>::is_always_lock_free && std::atomi
 
 void on_interrupt(int) {
   std::atomic<bool>* const stop = stop_flag.load();
-  if (!stop || stop->exchange(true)) _exit(kExitCode);
+  if (!stop) _exit(kExitCode);
+  stop->store(true);
 }
 
 }  // namespace

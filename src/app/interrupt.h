@@ -8,8 +8,8 @@ namespace vitral {
 // error of the write instead of a signal.
 void install_signal_handlers();
 
-// While one lives, the first interruption only sets `stop`; the second one still ends the program at
-// once. There is one at a time.
+// While one lives, an interruption only sets `stop`, however often it comes: for work that looks at
+// `stop` often, or that is short and would leave something behind. There is one at a time.
 class InterruptGuard {
  public:
   explicit InterruptGuard(std::atomic<bool>& stop);

@@ -106,6 +106,12 @@ void find_view(Job& job, const Options& options) {
   Scene& scene = job.project.scene;
   Settings& settings = job.pipeline.settings;
   const float aspect = static_cast<float>(settings.width) / static_cast<float>(settings.height);
+  // Products of edges and distances must not vanish among the floats.
+  constexpr double kLeastDiagonal = 1e-30;
+  const Box box = bounds(scene.mesh);
+  const double diagonal = length(to_double(box.max) - to_double(box.min));
+  if (diagonal > 0 && diagonal < kLeastDiagonal)
+    fail(job.input, "the mesh is too small for a camera to see it");
   const ViewWishes wishes{options.eye, options.view, options.up, options.fov, options.near, options.far};
   View view;
   if (options.eye || options.view) {

@@ -203,7 +203,8 @@ constexpr OptionRow kTable[] = {
      [](O& o, const R& r, const S& v) { o.ao_exponent = number(r, v, kExponents); }},
     {kLight, "--max-depth", "", "N", kFrame, "generations of reflected and refracted rays, 0 to 100 (5)",
      [](O& o, const R& r, const S& v) { o.max_depth = integer(r, v, 0, kMostDepth); }},
-    {kLight, "--min-importance", "", "X", kFrame, "a path that weighs less is cut, 0 to 1 (0.005)",
+    {kLight, "--min-importance", "", "X", kFrame,
+     "a path that weighs less is cut, 0 to 1 (0.005); what is below\n1/4096 counts as 1/4096",
      [](O& o, const R& r, const S& v) { o.min_importance = number(r, v, kImportances); }},
     {kLight, "--fresnel", "", "MODEL", kFrame, "exact, schlick or report (exact)",
      [](O& o, const R& r, const S& v) {

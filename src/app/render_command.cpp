@@ -13,6 +13,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <utility>
 
 namespace vitral {
@@ -80,28 +81,62 @@ void print_summary(const Outputs& outputs, const Frame& frame, const RunTimes& t
       in_words(times.write_seconds).c_str(), frame.stats.threads, frame.stats.isa.c_str());
 }
 
+void stop_if_asked(const Control& control) {
+  if (control.stop) throw Interrupted();
+}
+
+// Writes one output by calling `write`. A regular file has a temporary name until it is whole, and an
+// interruption waits for that; a pipe may never be read, and ends at once.
+template <class Write>
+void write_output(const std::string& path, Control& control, Write write) {
+  std::error_code code;
+  const fs::file_status status = fs::status(path, code);
+  std::optional<InterruptGuard> guard;
+  if (path != "-" && (!fs::exists(status) || fs::is_regular_file(status))) guard.emplace(control.stop);
+  stop_if_asked(control);
+  write();
+}
+
 // The auxiliary pictures and the statistics; afterwards times.write_seconds covers all but the
 // writing of the picture, whose encoding took `encode_seconds`.
 void write_companions(const Outputs& outputs, const Frame& frame, const Job& job, double encode_seconds,
-                      RunTimes& times) {
+                      RunTimes& times, Control& control) {
   const auto start = std::chrono::steady_clock::now();
   for (const auto& [name, path] : outputs.aovs) {
     const auto found = std::find_if(frame.aovs.begin(), frame.aovs.end(),
                                     [&, wanted = &name](const Aov& aov) { return aov.name == *wanted; });
     if (found == frame.aovs.end()) fail(path, "the renderer made no picture of this name");
-    write_pfm(path, *found);
+    write_output(path, control, [&, file = &path] { write_pfm(*file, *found); });
   }
   times.write_seconds = encode_seconds + seconds_since(start);
-  if (!outputs.stats.empty()) write_file(outputs.stats, stats_json(job, frame.stats, times));
+  if (outputs.stats.empty()) return;
+  write_output(outputs.stats, control,
+               [&] { write_file(outputs.stats, stats_json(job, frame.stats, times)); });
 }
 
 // The picture comes last: when it is there, everything is.
-void write_outputs(const Outputs& outputs, const Frame& frame, const Job& job, RunTimes& times) {
+void write_outputs(const Outputs& outputs, const Frame& frame, const Job& job, RunTimes& times,
+                   Control& control) {
   const auto start = std::chrono::steady_clock::now();
   const std::string picture = encode_png(frame.pixels);
-  write_companions(outputs, frame, job, seconds_since(start), times);
-  write_file(outputs.png, picture);
+  write_companions(outputs, frame, job, seconds_since(start), times, control);
+  write_output(outputs.png, control, [&] { write_file(outputs.png, picture); });
   times.write_seconds = seconds_since(start);
+}
+
+enum class Audience { nobody, terminal };
+
+// Renders, with a progress bar on a terminal. An interruption waits until a worker notices it.
+Frame render_guarded(const Job& job, Audience audience, Control& control) {
+  const InterruptGuard guard(control.stop);
+  const auto bar = std::make_unique<ProgressBar>();
+  if (audience == Audience::terminal)
+    control.on_progress = [&](const Progress& progress) { bar->update(progress); };
+  Frame frame = render(job.project.scene, job.camera, job.pipeline.settings, control);
+  control.on_progress = nullptr;
+  bar->erase();
+  stop_if_asked(control);
+  return frame;
 }
 
 }  // namespace
@@ -110,22 +145,21 @@ int run_render(const Options& options) {
   // Everything that can be refused is refused before the meshes are loaded.
   Job job = plan_job(options);
   const Outputs outputs = outputs_of(options);
-  check_outputs(outputs, job);
+  Control control;
+  {
+    const InterruptGuard guard(control.stop);  // trying a folder makes a temporary file, too
+    check_outputs(outputs, job);
+  }
+  stop_if_asked(control);
   report_warnings(job.warnings, options);
 
   load_job(job, options);
   report_warnings(job.warnings, options);
 
-  // From here on a file may be half written: an interruption waits until somebody notices it.
-  Control control;
-  const InterruptGuard guard(control.stop);
-  const bool talks = is_terminal(STDERR_FILENO) && !options.quiet;
-  const auto bar = std::make_unique<ProgressBar>();
-  if (talks) control.on_progress = [&](const Progress& progress) { bar->update(progress); };
+  const Audience audience =
+      is_terminal(STDERR_FILENO) && !options.quiet ? Audience::terminal : Audience::nobody;
   const auto start = std::chrono::steady_clock::now();
-  const Frame frame = render(job.project.scene, job.camera, job.pipeline.settings, control);
-  control.on_progress = nullptr;
-  bar->erase();
+  const Frame frame = render_guarded(job, audience, control);
   RunTimes times{job.load_seconds, seconds_since(start), 0};
   if (frame.stats.not_finite_pixels > 0) {
     job.warnings.push_back(std::to_string(frame.stats.not_finite_pixels) +
@@ -133,8 +167,8 @@ int run_render(const Options& options) {
   }
   report_warnings(job.warnings, options);
 
-  write_outputs(outputs, frame, job, times);
-  if (talks) print_summary(outputs, frame, times);
+  write_outputs(outputs, frame, job, times, control);
+  if (audience == Audience::terminal) print_summary(outputs, frame, times);
   return kDone;
 }
 

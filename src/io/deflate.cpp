@@ -152,23 +152,25 @@ class Deflater {
         slot = static_cast<uint32_t>(at + 1);
       }
       if (length >= kMinMatch) {
-        add({static_cast<uint16_t>(length), static_cast<uint16_t>(distance - 1)}, true);
+        add({static_cast<uint16_t>(length), static_cast<uint16_t>(distance - 1)}, Kind::copy);
         // Every second place inside the match is enough to be found again.
         for (size_t i = at + 1; i < at + length && i + 8 <= bytes.size(); i += 2) {
           last[hash(&bytes[i])] = static_cast<uint32_t>(i + 1);
         }
         at += length;
       } else {
-        add({bytes[at], 0}, false);
+        add({bytes[at], 0}, Kind::literal);
         ++at;
       }
-      if (symbols_.size() == kBlockSymbols) write_block(at == bytes.size());
+      if (symbols_.size() == kBlockSymbols) write_block(at == bytes.size() ? Block::last : Block::inner);
     }
-    if (!finished_) write_block(true);
+    if (!finished_) write_block(Block::last);
     writer_.flush();
   }
 
  private:
+  enum class Kind : uint8_t { literal, copy };
+  enum class Block { inner, last };
   static constexpr int kHashBits = 15;
 
   static uint32_t hash(const uint8_t* p) {
@@ -192,16 +194,16 @@ class Deflater {
     return n;
   }
 
-  void add(Symbol symbol, bool is_match) {
+  void add(Symbol symbol, Kind kind) {
     symbols_.push_back(symbol);
-    matches_.push_back(is_match);
+    kinds_.push_back(kind);
   }
 
-  void write_block(bool last) {
+  void write_block(Block block) {
     std::vector<uint32_t> literals(kLiterals, 0), distances(kDistances, 0);
     for (size_t i = 0; i < symbols_.size(); ++i) {
       const Symbol s = symbols_[i];
-      if (matches_[i] != 0) {
+      if (kinds_[i] == Kind::copy) {
         ++literals[static_cast<size_t>(code_length(s.length).code)];
         ++distances[static_cast<size_t>(code_distance(s.distance + 1u).code)];
       } else {
@@ -212,12 +214,12 @@ class Deflater {
     const HuffmanCode literal = make_code(literals, kMaxCodeBits);
     HuffmanCode distance = make_code(distances, kMaxCodeBits);
 
-    writer_.put(last ? 1 : 0, 1);
+    writer_.put(block == Block::last ? 1 : 0, 1);
     writer_.put(2, 2);  // dynamic Huffman codes
     write_codes(literal.bits, distance.bits);
     for (size_t i = 0; i < symbols_.size(); ++i) {
       const Symbol s = symbols_[i];
-      if (matches_[i] == 0) {
+      if (kinds_[i] == Kind::literal) {
         writer_.put(literal.code[s.length], literal.bits[s.length]);
         continue;
       }
@@ -230,8 +232,8 @@ class Deflater {
     }
     writer_.put(literal.code[kEndOfBlock], literal.bits[kEndOfBlock]);
     symbols_.clear();
-    matches_.clear();
-    finished_ = last;
+    kinds_.clear();
+    finished_ = block == Block::last;
   }
 
   // Both codes' lengths in one row, itself Huffman coded (RFC 1951, 3.2.7). Runs of zeros are
@@ -273,7 +275,7 @@ class Deflater {
 
   BitWriter writer_;
   std::vector<Symbol> symbols_;
-  std::vector<uint8_t> matches_;
+  std::vector<Kind> kinds_;
   bool finished_ = false;
 };
 

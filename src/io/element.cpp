@@ -105,9 +105,9 @@ long integer_attribute(const Source& source, const XmlElement& element, std::str
            std::to_string(least) + " to " + std::to_string(most));
 }
 
-bool flag_attribute(const Source& source, const XmlElement& element, std::string_view name, bool otherwise) {
+bool flag_attribute(const Source& source, const XmlElement& element, std::string_view name) {
   const std::string* text = find_attribute(element, name);
-  if (!text) return otherwise;
+  if (!text) return false;
   for (const std::string_view yes : {"true", "yes", "1"}) {
     if (same_name(*text, yes)) return true;
   }

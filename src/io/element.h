@@ -34,7 +34,7 @@ const std::string* find_attribute(const XmlElement& element, std::string_view na
 float number_attribute(const Source&, const XmlElement&, std::string_view name, Range range, float otherwise);
 long integer_attribute(const Source&, const XmlElement&, std::string_view name, long least, long most,
                        long otherwise);
-bool flag_attribute(const Source&, const XmlElement&, std::string_view name, bool otherwise);
+bool flag_attribute(const Source&, const XmlElement&, std::string_view name);  // false when not there
 
 // The value of a whole element, as the three forms of project.h have it.
 Vec3 vector_of(const Source&, const XmlElement&, Range range);

@@ -61,6 +61,7 @@ class ObjLoader {
   void check_chunks();
   void load_materials();
   void load_library(size_t chunk, const ObjNote& note);
+  void warn_unread(size_t chunk, const ObjNote& note, const std::string& name, const std::string& reason);
   void resolve_states();
   void join(Mesh mesh);
 
@@ -72,6 +73,7 @@ class ObjLoader {
   std::vector<MtlMaterial> library_;
   std::vector<size_t> library_file_;  // [material of library_]: into library_paths_
   std::vector<std::string> library_paths_;
+  std::vector<std::string> unread_libraries_;  // names and files, each warned of once
   std::map<std::string, uint32_t> material_by_name_;  // into library_
 };
 
@@ -166,7 +168,7 @@ void ObjLoader::load_library(size_t chunk, const ObjNote& note) {
     }
     for (const std::string& n : names) {
       if (!look_for(n) && !look_for(without_escapes(n)))
-        warn_at(chunk, note.line, "material library " + quoted(n) + ": No such file or directory");
+        warn_unread(chunk, note, n, quoted(n) + ": No such file or directory");
     }
   }
   for (const std::string& file : found) {
@@ -177,13 +179,21 @@ void ObjLoader::load_library(size_t chunk, const ObjNote& note) {
       library_.insert(library_.end(), materials.begin(), materials.end());
       library_file_.resize(library_.size(), library_paths_.size() - 1);
     } catch (const InputError& error) {
-      warn_at(chunk, note.line, std::string("material library ") + error.what());
+      warn_unread(chunk, note, file, error.what());
     }
   }
 }
 
+void ObjLoader::warn_unread(size_t chunk, const ObjNote& note, const std::string& name,
+                            const std::string& reason) {
+  if (std::find(unread_libraries_.begin(), unread_libraries_.end(), name) != unread_libraries_.end()) return;
+  unread_libraries_.push_back(name);
+  warn_at(chunk, note.line, "material library " + reason);
+}
+
 // Carries material and smoothing group from chunk to chunk, and turns names into numbers. A name
-// that no library has gets a material of default values.
+// that no library has gets a material of default values. No word of it when some library could not be
+// read: the name may well be in there, and that warning says enough.
 void ObjLoader::resolve_states() {
   size_t unknown = 0;
   for (size_t i = 0; i < file_.chunks.size(); ++i) {
@@ -197,7 +207,7 @@ void ObjLoader::resolve_states() {
         library_.emplace_back();
         library_.back().material.name = name.empty() ? "default" : name;
         library_file_.push_back(0);
-        if (++unknown <= kFewWarnings) {
+        if (unread_libraries_.empty() && ++unknown <= kFewWarnings) {
           warn_at(i, c.material_lines[n], "no material library defines " + quoted(name));
         }
       }

@@ -26,7 +26,8 @@
 //           <ambientOcclusion samples="16" distance="0.5" exponent="1"/>   samples: a square number
 //         <pass class="combine" name="..."/>       (other name: quad)
 //
-// reflection and refraction share their figures: what both give must agree. Any pass may have
+// reflection and refraction share their figures: what both give must agree; a minImportance below
+// 1/4096 counts as 1/4096. Any pass may have
 // compositing="physical|report" and seed="1", and may name the <camera>, <lights>, <scenes>,
 // <viewport> and <renderTarget(s)> it uses: the camera serves where the pipeline names none, the
 // others must exist, and everything of the assets takes part in every pass. Any pass may also hold

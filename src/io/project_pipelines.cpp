@@ -210,7 +210,7 @@ void read_pipelines(const Reading& reading, const XmlElement& element, const Set
   bool has_default = false;
   each(reading, element, "pipeline", [&](const XmlElement& child) {
     project.pipelines.push_back(read_pipeline(reading, child, defaults));
-    if (!flag_attribute(reading.source, child, "default", false)) return;
+    if (!flag_attribute(reading.source, child, "default")) return;
     if (has_default) fail(reading.source, child, "there is another default pipeline");
     has_default = true;
     project.default_pipeline = project.pipelines.size() - 1;
