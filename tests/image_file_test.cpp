@@ -2,7 +2,7 @@
 
 #include "io/deflate.h"
 #include "io/file.h"
-#include "temporary_folder.h"
+#include "scratch.h"
 
 #include <gtest/gtest.h>
 
@@ -41,8 +41,8 @@ bool same(const Image<Rgb8>& a, const Image<Rgb8>& b) {
 }
 
 TEST(ImageFile, PngComesBackExactly) {
-  const TemporaryFolder folder;
-  const std::string path = folder.path("a.png");
+  const test::ScratchFolder folder;
+  const std::string path = (folder / "a.png");
   const int sizes[][2] = {{1, 1}, {1, 40}, {40, 1}, {3, 2}, {257, 131}, {640, 333}};
   for (const auto& size : sizes) {
     for (const uint32_t noise : {0u, 3u, 255u}) {
@@ -54,21 +54,21 @@ TEST(ImageFile, PngComesBackExactly) {
 }
 
 TEST(ImageFile, PngIsSmallWhereThePictureIsSimpleAndHoldsNoDate) {
-  const TemporaryFolder folder;
-  write_png(folder.path("a.png"), Image<Rgb8>(1024, 1024, {10, 20, 30}));
-  const std::string bytes = folder.read("a.png");
+  const test::ScratchFolder folder;
+  write_png((folder / "a.png"), Image<Rgb8>(1024, 1024, {10, 20, 30}));
+  const std::string bytes = test::read_text(folder / "a.png");
   EXPECT_LT(bytes.size(), 20000u);
   EXPECT_EQ(bytes.find("tIME"), std::string::npos);
-  write_png(folder.path("b.png"), Image<Rgb8>(1024, 1024, {10, 20, 30}));
-  EXPECT_EQ(folder.read("b.png"), bytes);
+  write_png((folder / "b.png"), Image<Rgb8>(1024, 1024, {10, 20, 30}));
+  EXPECT_EQ(test::read_text(folder / "b.png"), bytes);
 }
 
 TEST(ImageFile, PfmHoldsTheFloatsFromTheBottomUp) {
-  const TemporaryFolder folder;
+  const test::ScratchFolder folder;
   Aov aov{"depth", 1, Image<Vec3>(2, 2)};
   for (int i = 0; i < 4; ++i) aov.pixels.pixels[static_cast<size_t>(i)] = {static_cast<float>(i), 10, 20};
-  write_pfm(folder.path("a.pfm"), aov);
-  std::string bytes = folder.read("a.pfm");
+  write_pfm((folder / "a.pfm"), aov);
+  std::string bytes = test::read_text(folder / "a.pfm");
   ASSERT_EQ(bytes.substr(0, 12), "Pf\n2 2\n-1.0\n");
   float values[4];
   ASSERT_EQ(bytes.size(), 12 + sizeof values);
@@ -76,69 +76,70 @@ TEST(ImageFile, PfmHoldsTheFloatsFromTheBottomUp) {
   EXPECT_EQ(values[0], 2);
   EXPECT_EQ(values[3], 1);
   aov.channels = 3;
-  write_pfm(folder.path("a.pfm"), aov);
-  bytes = folder.read("a.pfm");
+  write_pfm((folder / "a.pfm"), aov);
+  bytes = test::read_text(folder / "a.pfm");
   EXPECT_EQ(bytes.substr(0, 3), "PF\n");
   EXPECT_EQ(bytes.size(), 12u + 48u);
 }
 
 TEST(ImageFile, OutputIsWholeOrNotThere) {
-  const TemporaryFolder folder;
+  const test::ScratchFolder folder;
   const Image<Rgb8> image = picture(8, 8, 0);
   const auto error = [&](const std::string& path) {
-    const std::string checked = error_of<InputError>([&] { check_writable(path); });
-    const std::string written = error_of<InputError>([&] { write_png(path, image); });
+    const std::string checked = test::error_of<InputError>([&] { check_writable(path); });
+    const std::string written = test::error_of<InputError>([&] { write_png(path, image); });
     EXPECT_EQ(checked, written) << "what is checked before is what happens after";
     return written;
   };
-  EXPECT_EQ(error(folder.path("none/a.png")), folder.path("none/a.png") + ": No such file or directory");
-  std::filesystem::create_directory(folder.path("folder"));
-  EXPECT_EQ(error(folder.path("folder")), folder.path("folder") + ": Is a directory");
-  EXPECT_EQ(error(folder.path("")), folder.path("") + ": Is a directory");
+  EXPECT_EQ(error((folder / "none/a.png")), (folder / "none/a.png") + ": No such file or directory");
+  std::filesystem::create_directory((folder / "folder"));
+  EXPECT_EQ(error((folder / "folder")), (folder / "folder") + ": Is a directory");
+  EXPECT_EQ(error((folder / "")), (folder / "") + ": Is a directory");
   folder.write("file", "x");
-  EXPECT_NE(error(folder.path("file/a.png")), "");
+  EXPECT_NE(error((folder / "file/a.png")), "");
   EXPECT_NE(error(""), "");
   EXPECT_EQ(folder.files(), 2u) << "no temporary file is left";
 
   folder.write("a.png", "what stood here before");
-  check_writable(folder.path("a.png"));
-  EXPECT_EQ(folder.read("a.png"), "what stood here before");
-  write_png(folder.path("a.png"), image);
-  EXPECT_TRUE(same(read_png(folder.path("a.png")), image));
+  check_writable((folder / "a.png"));
+  EXPECT_EQ(test::read_text(folder / "a.png"), "what stood here before");
+  write_png((folder / "a.png"), image);
+  EXPECT_TRUE(same(read_png((folder / "a.png")), image));
   EXPECT_EQ(folder.files(), 3u);
 }
 
 TEST(ImageFile, AFullDeviceIsAnError) {
   if (!std::filesystem::exists("/dev/full")) GTEST_SKIP();
-  EXPECT_EQ(error_of<InputError>([] { write_file("/dev/full", "x"); }), "/dev/full: No space left on device");
+  EXPECT_EQ(test::error_of<InputError>([] { write_file("/dev/full", "x"); }),
+            "/dev/full: No space left on device");
   EXPECT_TRUE(std::filesystem::exists("/dev/full"));
 }
 
 TEST(ImageFile, PipesAndLinksKeepTheirIdentity) {
-  const TemporaryFolder folder;
+  const test::ScratchFolder folder;
   folder.write("target", "old");
-  std::filesystem::create_symlink("target", folder.path("link"));
-  write_file(folder.path("link"), "new");
-  EXPECT_TRUE(std::filesystem::is_symlink(folder.path("link")));
-  EXPECT_EQ(folder.read("target"), "new");
+  std::filesystem::create_symlink("target", (folder / "link"));
+  write_file((folder / "link"), "new");
+  EXPECT_TRUE(std::filesystem::is_symlink((folder / "link")));
+  EXPECT_EQ(test::read_text(folder / "target"), "new");
 
-  ASSERT_EQ(::mkfifo(folder.path("pipe").c_str(), 0600), 0);
+  ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
   std::string received;
-  std::thread reader([&] { received = folder.read("pipe"); });
-  write_file(folder.path("pipe"), "through the pipe");
+  std::thread reader([&] { received = test::read_text(folder / "pipe"); });
+  write_file((folder / "pipe"), "through the pipe");
   reader.join();
   EXPECT_EQ(received, "through the pipe");
-  EXPECT_EQ(error_of<InputError>([&] { read_file(folder.path("pipe"), 100); }),
-            folder.path("pipe") + ": not a regular file");
+  EXPECT_EQ(test::error_of<InputError>([&] { read_file((folder / "pipe"), 100); }),
+            (folder / "pipe") + ": not a regular file");
 }
 
 TEST(ImageFile, ANewFileObeysTheUmask) {
-  const TemporaryFolder folder;
+  const test::ScratchFolder folder;
   const mode_t before = ::umask(027);
-  write_file(folder.path("a"), "x");
+  write_file((folder / "a"), "x");
   ::umask(before);
   struct stat info;
-  ASSERT_EQ(::stat(folder.path("a").c_str(), &info), 0);
+  ASSERT_EQ(::stat((folder / "a").c_str(), &info), 0);
   EXPECT_EQ(info.st_mode & 0777, 0640u);
 }
 
@@ -156,7 +157,7 @@ std::string small_bmp() {
 }
 
 TEST(ImageFile, TextureRowsRunFromTheTop) {
-  const TemporaryFolder folder;
+  const test::ScratchFolder folder;
   const Texture t = load_texture(folder.write("a.bmp", small_bmp()));
   EXPECT_EQ(t.width, 1);
   EXPECT_EQ(t.height, 2);
@@ -170,13 +171,13 @@ TEST(ImageFile, TextureRowsRunFromTheTop) {
 }
 
 TEST(ImageFile, RefusesPicturesThatAreBrokenOrTooLarge) {
-  const TemporaryFolder folder;
+  const test::ScratchFolder folder;
   const auto error = [&](const std::string& bytes) {
-    const std::string text = error_of<InputError>([&] { load_texture(folder.write("a", bytes)); });
+    const std::string text = test::error_of<InputError>([&] { load_texture(folder.write("a", bytes)); });
     EXPECT_EQ(text.find('\n'), std::string::npos);
     return text;
   };
-  EXPECT_EQ(error(""), folder.path("a") + ": the file is empty");
+  EXPECT_EQ(error(""), (folder / "a") + ": the file is empty");
   EXPECT_NE(error("GIF89a............................").find("not a picture in PNG"), std::string::npos);
   EXPECT_NE(error("not a picture at all, but text").find("not a picture in PNG"), std::string::npos);
 
@@ -190,20 +191,21 @@ TEST(ImageFile, RefusesPicturesThatAreBrokenOrTooLarge) {
   tga[15] = 0x01;
   EXPECT_NE(error(tga).find("too short for a picture of 16000 x 384 pixels"), std::string::npos);
 
-  write_png(folder.path("b"), picture(64, 64, 255));
-  const std::string png = folder.read("b");
+  write_png((folder / "b"), picture(64, 64, 255));
+  const std::string png = test::read_text(folder / "b");
   EXPECT_NE(error(png.substr(0, png.size() / 2)), "");
   std::string critical = png;
   critical.insert(33, std::string("\0\0\0\0\n\nAB\0\0\0\0", 12));  // a chunk called "\n\nAB"
   EXPECT_NE(error(critical), "");
-  EXPECT_NE(error_of<InputError>([&] { read_png(folder.write("c", small_bmp())); }).find("not a PNG file"),
-            std::string::npos);
+  EXPECT_NE(
+      test::error_of<InputError>([&] { read_png(folder.write("c", small_bmp())); }).find("not a PNG file"),
+      std::string::npos);
 }
 
 TEST(ImageFile, ABrokenPictureDecodesTheSameEveryTime) {
-  const TemporaryFolder folder;
-  write_png(folder.path("a"), picture(40, 40, 255));
-  std::string bytes = folder.read("a");
+  const test::ScratchFolder folder;
+  write_png((folder / "a"), picture(40, 40, 255));
+  std::string bytes = test::read_text(folder / "a");
   uint32_t state = 1;
   for (int i = 0; i < 60; ++i) {
     std::string damaged = bytes;

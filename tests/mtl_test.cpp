@@ -2,7 +2,7 @@
 
 #include "io/image_file.h"
 #include "io/mesh_file.h"
-#include "temporary_folder.h"
+#include "scratch.h"
 
 #include <gtest/gtest.h>
 
@@ -32,7 +32,7 @@ std::string tga(int r, int g, int b, int a = -1) {
 }
 
 // Loads a triangle whose material has these statements, out of a folder with these pictures.
-Scene load_with(const TemporaryFolder& folder, const std::string& statements, Warnings& warnings) {
+Scene load_with(const test::ScratchFolder& folder, const std::string& statements, Warnings& warnings) {
   folder.write("m.mtl", "newmtl m\n" + statements);
   Scene scene;
   load_mesh(folder.write("mesh.obj", "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl m\nf 1 2 3\n"), scene,
@@ -121,7 +121,7 @@ TEST(Mtl, ABlackKdBesideATextureIsWhite) {
 }
 
 TEST(Mtl, FindsTexturesUnderTheNamesPeopleWrite) {
-  const TemporaryFolder folder;
+  const test::ScratchFolder folder;
   folder.write("maps/Brick Wall.TGA", tga(10, 20, 30));
   for (const char* const name : {"maps/Brick Wall.TGA", "maps\\brick wall.tga", "./MAPS/BRICK WALL.TGA"}) {
     Warnings warnings;
@@ -137,7 +137,7 @@ TEST(Mtl, FindsTexturesUnderTheNamesPeopleWrite) {
 }
 
 TEST(Mtl, AMissingOrBrokenTextureIsAWarning) {
-  const TemporaryFolder folder;
+  const test::ScratchFolder folder;
   folder.write("broken.png", "\x89PNG\r\n\x1a\n");
   folder.write("empty.png", "");
   for (const char* const name : {"missing.png", "broken.png", "empty.png"}) {
@@ -152,7 +152,7 @@ TEST(Mtl, AMissingOrBrokenTextureIsAWarning) {
 }
 
 TEST(Mtl, OpacityIsAlphaOrElseGrey) {
-  const TemporaryFolder folder;
+  const test::ScratchFolder folder;
   folder.write("rgba.tga", tga(200, 100, 50, 40));
   folder.write("rgb.tga", tga(60, 60, 60));
   folder.write("opaque.tga", tga(70, 70, 70, 255));
@@ -179,7 +179,7 @@ TEST(Mtl, OpacityIsAlphaOrElseGrey) {
 }
 
 TEST(Mtl, TexturesOfUnusedMaterialsAreNotLoaded) {
-  const TemporaryFolder folder;
+  const test::ScratchFolder folder;
   folder.write("a.tga", tga(1, 2, 3));
   Warnings warnings;
   const Scene scene = load_with(folder, "Kd 1 1 1\nnewmtl other\nmap_Kd a.tga\n", warnings);

@@ -1,7 +1,7 @@
 #include "io/normals.h"
 
 #include "io/obj.h"
-#include "temporary_folder.h"
+#include "scratch.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@ namespace vitral {
 namespace {
 
 Mesh load(const std::string& text) {
-  const TemporaryFolder folder;
+  const test::ScratchFolder folder;
   Scene scene;
   Warnings warnings;
   load_obj(folder.write("mesh.obj", text), scene, warnings, 1);

@@ -1,7 +1,7 @@
 #include "io/obj.h"
 
 #include "io/mesh_file.h"
-#include "temporary_folder.h"
+#include "scratch.h"
 
 #include <gtest/gtest.h>
 
@@ -17,14 +17,14 @@ struct Loaded {
 };
 
 Loaded load_text(std::string_view text, int threads = 1) {
-  const TemporaryFolder folder;
+  const test::ScratchFolder folder;
   Loaded result;
   load_obj(folder.write("mesh.obj", text), result.scene, result.warnings, threads);
   return result;
 }
 
 std::string error_in(std::string_view text) {
-  const std::string error = error_of<InputError>([&] { load_text(text); });
+  const std::string error = test::error_of<InputError>([&] { load_text(text); });
   const size_t at = error.find("mesh.obj");
   return at == std::string::npos ? error : error.substr(at);
 }
@@ -200,7 +200,7 @@ TEST(Obj, AnswersWrongFilesWithFileLineAndReason) {
 }
 
 TEST(Obj, AFailedLoadLeavesTheSceneAsItWas) {
-  const TemporaryFolder folder;
+  const test::ScratchFolder folder;
   Scene scene;
   Warnings warnings;
   load_mesh(folder.write("good.obj", std::string(kSquare) + "f 1 2 3 4\n"), scene, warnings);
@@ -221,7 +221,7 @@ TEST(Obj, SkipsOtherStatementsAndSaysSoOnce) {
 }
 
 TEST(Obj, AssignsMaterialsByName) {
-  const TemporaryFolder folder;
+  const test::ScratchFolder folder;
   folder.write("a b.mtl", "newmtl red\nKd 1 0 0\nnewmtl two words\nKd 0 1 0\n");
   folder.write("c.mtl", "newmtl red\nKd 0 0 1\nnewmtl blue\nKd 0 0 1\n");
   Scene scene;
@@ -252,7 +252,7 @@ TEST(Obj, WarnsOnceOfALibraryThatIsNotThere) {
 }
 
 TEST(Obj, SecondMeshJoinsTheFirst) {
-  const TemporaryFolder folder;
+  const test::ScratchFolder folder;
   folder.write("m.mtl", "newmtl a\n");
   Scene scene;
   Warnings warnings;
@@ -274,15 +274,15 @@ TEST(Obj, SecondMeshJoinsTheFirst) {
 }
 
 TEST(Obj, RefusesWhatIsNoMesh) {
-  const TemporaryFolder folder;
+  const test::ScratchFolder folder;
   Scene scene;
   Warnings warnings;
   const auto error = [&](const std::string& path) {
-    return error_of<InputError>([&] { load_mesh(path, scene, warnings); });
+    return test::error_of<InputError>([&] { load_mesh(path, scene, warnings); });
   };
-  std::filesystem::create_directory(folder.path("folder.obj"));
-  EXPECT_EQ(error(folder.path("none.obj")), folder.path("none.obj") + ": No such file or directory");
-  EXPECT_EQ(error(folder.path("folder.obj")), folder.path("folder.obj") + ": Is a directory");
+  std::filesystem::create_directory((folder / "folder.obj"));
+  EXPECT_EQ(error((folder / "none.obj")), (folder / "none.obj") + ": No such file or directory");
+  EXPECT_EQ(error((folder / "folder.obj")), (folder / "folder.obj") + ": Is a directory");
   EXPECT_EQ(error("/dev/null.stl"), "/dev/null.stl: not a mesh: the name must end in .obj or .ply");
 }
 
@@ -319,7 +319,8 @@ TEST(Obj, DoesNotDependOnTheNumberOfThreads) {
   std::string broken = text + "v 0 bad 0\n";
   broken.insert(broken.find("\nv ", 700000) + 1, "v 0 worse 0\n");
   for (const int threads : {1, 4}) {
-    EXPECT_NE(error_of<InputError>([&] { load_text(broken, threads); }).find("'worse'"), std::string::npos);
+    EXPECT_NE(test::error_of<InputError>([&] { load_text(broken, threads); }).find("'worse'"),
+              std::string::npos);
   }
 }
 
@@ -342,7 +343,7 @@ TEST(Obj, ReadsLinesOfAnyLength) {
 }
 
 TEST(Obj, AHugeFileOfNothingIsRefusedAtOnce) {
-  const TemporaryFolder folder;
+  const test::ScratchFolder folder;
   Scene scene;
   Warnings warnings;
   for (const char* const name : {"a.obj", "a.ply"}) {
@@ -350,7 +351,7 @@ TEST(Obj, AHugeFileOfNothingIsRefusedAtOnce) {
     std::error_code error;
     std::filesystem::resize_file(path, uint64_t{1} << 40, error);  // a hole: it takes no room on the disk
     if (error) GTEST_SKIP() << error.message();
-    EXPECT_NE(error_of<InputError>([&] { load_mesh(path, scene, warnings); }).find("not a"),
+    EXPECT_NE(test::error_of<InputError>([&] { load_mesh(path, scene, warnings); }).find("not a"),
               std::string::npos);
   }
 }

@@ -1,6 +1,6 @@
 #include "io/ply.h"
 
-#include "temporary_folder.h"
+#include "scratch.h"
 
 #include <gtest/gtest.h>
 
@@ -16,14 +16,14 @@ struct Loaded {
 };
 
 Loaded load(const std::string& bytes) {
-  const TemporaryFolder folder;
+  const test::ScratchFolder folder;
   Loaded result;
   load_ply(folder.write("mesh.ply", bytes), result.scene, result.warnings, 1);
   return result;
 }
 
 std::string error_in(const std::string& bytes) {
-  const std::string error = error_of<InputError>([&] { load(bytes); });
+  const std::string error = test::error_of<InputError>([&] { load(bytes); });
   const size_t at = error.find("mesh.ply");
   return at == std::string::npos ? error : error.substr(at);
 }

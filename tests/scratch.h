@@ -29,9 +29,10 @@ class ScratchFolder {
   const std::filesystem::path& path() const { return path_; }
   std::string operator/(std::string_view name) const { return (path_ / name).string(); }
 
-  // Writes a file and returns its path.
+  // Writes a file, its folder if need be, and returns its path.
   std::string write(std::string_view name, std::string_view text) const {
     const std::string file = *this / name;
+    std::filesystem::create_directories(std::filesystem::path(file).parent_path());
     std::ofstream(file, std::ios::binary) << text;
     return file;
   }
@@ -47,6 +48,17 @@ class ScratchFolder {
 inline std::string read_text(const std::filesystem::path& path) {
   std::ifstream stream(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+// The text of the exception of type Error that `call` throws; empty when it throws none.
+template <class Error, class Call>
+std::string error_of(const Call& call) {
+  try {
+    call();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return {};
 }
 
 }  // namespace vitral::test
