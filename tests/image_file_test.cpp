@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -200,6 +202,35 @@ TEST(ImageFile, RefusesPicturesThatAreBrokenOrTooLarge) {
   EXPECT_NE(
       test::error_of<InputError>([&] { read_png(folder.write("c", small_bmp())); }).find("not a PNG file"),
       std::string::npos);
+}
+
+// stb_image writes the symbols of a Huffman table to room for 256, however many the file counts; and
+// it goes over the whole picture once for every scan that the file has.
+TEST(ImageFile, RefusesJpegsThatItsDecoderCannotBear) {
+  const test::ScratchFolder folder;
+  const auto error = [&](const std::string& segments) {
+    const std::string path = folder.write("a.jpg", "\xff\xd8" + segments + "\xff\xd9");
+    return test::error_of<InputError>([&] { load_texture(path); });
+  };
+  const auto huffman_table = [](size_t symbols) {
+    std::string counts(16, '\0');
+    for (size_t i = 0, left = symbols; left > 0; ++i) {
+      const size_t n = std::min<size_t>(left, 200);
+      counts[15 - i] = static_cast<char>(n);
+      left -= n;
+    }
+    const size_t length = 2 + 17 + symbols;
+    return std::string("\xff\xc4") + static_cast<char>(length >> 8) + static_cast<char>(length & 0xff) +
+           std::string(1, '\0') + counts + std::string(symbols, '\1');
+  };
+  EXPECT_NE(error(huffman_table(257)).find("Huffman table of more than 256"), std::string::npos);
+  EXPECT_EQ(error(huffman_table(256)).find("Huffman table of more than 256"), std::string::npos);
+
+  const std::string scan("\xff\xda\0\x08\1\1\0\0\x3f\0", 10);
+  std::string scans;
+  for (int i = 0; i < 1000; ++i) scans += scan;
+  EXPECT_EQ(error(scans).find("scans"), std::string::npos);
+  EXPECT_NE(error(scans + scan).find("more than 1000 JPEG scans"), std::string::npos);
 }
 
 TEST(ImageFile, ABrokenPictureDecodesTheSameEveryTime) {

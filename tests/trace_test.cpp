@@ -130,6 +130,34 @@ TEST(Trace, WalkEqualsBruteForce) {
   }
 }
 
+// Where numbers are denormal, errors do not shrink with the scene: the slack must not either. Rays
+// start close to the surface, into its middles and corners.
+TEST(Trace, WalkEqualsBruteForceAmongDenormals) {
+  const Vec3 axes[6] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
+  for (const float scale : {1.6e-40f, 5e-41f, 1e-41f, 3e-42f}) {
+    Random random(1);
+    std::vector<KdTriangle> ball = sphere({0, 0, 0}, 1, 8);
+    for (KdTriangle& t : ball) {
+      for (auto& corner : t.corner) {
+        for (float& x : corner) x *= scale;
+      }
+    }
+    const Tree tree(std::move(ball));
+    int hits = 0;
+    for (int i = 0; i < 4000; ++i) {
+      const KdTriangle& t = tree.triangles[random.below(tree.size())];
+      const Vec3 a = corner_of(t, 0), middle = (a + corner_of(t, 1) + corner_of(t, 2)) * (1.0f / 3);
+      const Vec3 d = i % 2 ? axes[random.below(6)] : random.direction();
+      const float away = scale * random.unit() * (i % 3 ? 0.05f : 2.0f);
+      const Ray ray{(i % 4 < 2 ? middle : a) - d * away, 0, d, kInfinity};
+      const Hit brute = brute_force_closest(tree.view, tree.size(), ray, GlassRule::blocks);
+      ASSERT_TRUE(same_bits(brute, walk_closest(tree.view, ray))) << scale << " ray " << i;
+      hits += brute.triangle != kNoTriangle;
+    }
+    EXPECT_GT(hits, 3000) << scale;
+  }
+}
+
 class EveryIsa : public testing::TestWithParam<const Kernels*> {};
 
 TEST_P(EveryIsa, PacketsEqualTheWalk) {

@@ -1,5 +1,5 @@
-// The sRGB transfer curve (IEC 61966-2-1), by tables made at compile time from square roots' cousin,
-// the fifth root: x^2.4 = x^2 * (x^2)^(1/5).
+// The sRGB transfer curve (IEC 61966-2-1), by tables made at compile time. The power comes
+// from a fifth root: x^2.4 = x^2 * (x^2)^(1/5).
 #pragma once
 #include <array>
 #include <cstddef>
