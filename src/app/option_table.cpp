@@ -227,6 +227,12 @@ constexpr OptionRow kTable[] = {
      }},
     {kWork, "--repeat", "", "R", kBench, "frames that are timed, 1 to 1000 (5)",
      [](O& o, const R& r, const S& v) { o.repeat = integer(r, v, 1, 1000); }},
+    {kWork, "--mirror-all", "", "", kBench, "every surface is a perfect mirror",
+     [](O& o, const R&, const S&) { o.mirror_all = true; }},
+    {kWork, "--anchor", "", "", kBench,
+     "rays that another tracer can repeat: opaque surfaces, geometric\n"
+     "normals, a fixed offset, mirrors everywhere",
+     [](O& o, const R&, const S&) { o.anchor = true; }},
 
     {kTalk, "--stats", "", "FILE", kRender, "write times, rays and counts as JSON; - is standard output",
      [](O& o, const R& r, const S& v) { o.stats = name(r, v); }},

@@ -42,6 +42,8 @@ struct Options {
 
   std::string stats;  // empty: none; "-": standard output
   int repeat = 5;
+  bool anchor = false;      // bench: another tracer's rays
+  bool mirror_all = false;  // bench: every surface a perfect mirror
   bool json = false;
   bool quiet = false;
 };

@@ -74,6 +74,10 @@ struct KdTree {
   Box bounds;
 };
 
+inline size_t tree_bytes(const KdTree& tree) {
+  return tree.nodes.size() * sizeof(KdNode) + tree.references.size() * sizeof(uint32_t);
+}
+
 KdView make_view(const KdTree& tree, const std::vector<KdTriangle>& triangles, const CutOuts& cut_outs);
 
 // What any-hit rays do at glass: shadows and ambient occlusion let it through.

@@ -24,6 +24,14 @@ struct Kernels {
   // The live rays that meet anything in (tmin, tmax).
   uint64_t (*trace_any)(const KdView& tree, const RayPacket& rays, GlassRule glass);
 
+  // Where the live rays met their triangles: sets all of the points but their keys, the shading normal to
+  // the geometric one, and live to the rays that met any. Returns those that saw the back of their triangle.
+  uint64_t (*surface_points)(const KdTriangle* triangles, const RayPacket& rays, const HitPacket& hits,
+                             const OffsetRule& offset, PointPacket& out);
+
+  // One ray from every live point, mirrored about the geometric normal; sets rays.live.
+  void (*mirror_rays)(const PointPacket& points, RayPacket& rays);
+
   // One ray from every live point that faces the light to the light; sets rays.live.
   void (*shadow_rays)(const Light& light, const PointPacket& points, RayPacket& rays);
 

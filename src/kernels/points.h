@@ -1,6 +1,7 @@
 // What the secondary passes need to know of 64 surface points.
 #pragma once
 #include "kernels/packet.h"
+#include "math/random.h"
 
 namespace vitral {
 
@@ -8,7 +9,8 @@ struct alignas(64) PointPacket {
   float px[kPacketSize], py[kPacketSize], pz[kPacketSize];  // position
   float gx[kPacketSize], gy[kPacketSize], gz[kPacketSize];  // geometric normal, unit, turned to the viewer
   float nx[kPacketSize], ny[kPacketSize], nz[kPacketSize];  // shading normal, unit, turned to the viewer
-  float offset[kPacketSize];                                // ray_offset() of the point's triangle
+  float vx[kPacketSize], vy[kPacketSize], vz[kPacketSize];  // to the viewer, unit
+  float offset[kPacketSize];                                // secondary rays start this far off
   uint32_t key[kPacketSize];                                // seeds the point's random numbers
   uint64_t live;
 };
@@ -16,13 +18,20 @@ struct alignas(64) PointPacket {
 // A secondary ray starts this far off the surface along the geometric normal. A position is computed
 // from its triangle's corners, the largest coordinate of which is `magnitude`, with an error of about
 // 2^-22 of that: the offset is well beyond it, and knows nothing of the rest of the scene.
-static inline float ray_offset(float magnitude) {
-  return magnitude * (1.0f / 262144.0f);
+template <class F>
+static inline F ray_offset(const F& magnitude) {
+  return magnitude * F(1.0f / 262144.0f);
 }
 
+// How far off the surface secondary rays start: as far as rounding asks for, or a fixed distance.
+struct OffsetRule {
+  float fixed;  // 0: ray_offset() of the point's own triangle
+};
+
 struct AmbientSettings {
-  int strata;      // n of n x n samples
-  float distance;  // rays end here
+  int strata;                          // n of n x n samples
+  float distance;                      // rays end here
+  uint32_t sample_step = kSampleStep;  // see sample_hash()
 };
 
 }  // namespace vitral

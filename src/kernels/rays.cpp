@@ -3,6 +3,7 @@
 #include "kernels/candidates.h"
 #include "kernels/points.h"
 #include "kernels/tables.h"
+#include "math/fresnel.h"
 #include "math/random.h"
 #include "math/sampling.h"
 #include "simd/simd.h"
@@ -39,6 +40,18 @@ void primary_rays(const Pinhole& camera, int x, int y, RayPacket& rays) {
     store(rays.tmax + g, Float(camera.far));
   }
   rays.tmin = camera.near;
+}
+
+void mirror_rays(const PointPacket& points, RayPacket& rays) {
+  set_origins(points, rays);
+  rays.tmin = 0;
+  rays.live = points.live;
+  for (int g = 0; g < kPacketSize; g += kLanes) {
+    const Vec3T<Float> n = load3(points.gx, points.gy, points.gz, g);
+    const Vec3T<Float> incoming = -load3(points.vx, points.vy, points.vz, g);
+    store3(rays.dx, rays.dy, rays.dz, g, reflect(incoming, n));
+    store(rays.tmax + g, Float(kInfinity));
+  }
 }
 
 // One ray per point that faces the light. Towards a point light t = 1 is the light.
@@ -85,7 +98,7 @@ void ambient_occlusion(const KdView& tree, const PointPacket& points, const Ambi
     const Float sx = Float(static_cast<float>(s % settings.strata)),
                 sy = Float(static_cast<float>(s / settings.strata));
     for (int g = 0; g < kPacketSize; g += kLanes) {
-      const Uint h = sample_hash(load(points.key + g), static_cast<uint32_t>(s));
+      const Uint h = sample_hash(load(points.key + g), static_cast<uint32_t>(s), settings.sample_step);
       const Float u1 = (sx + to_float(h & Uint(0xffffu)) * unit) * side;
       const Float u2 = (sy + to_float(h >> 16) * unit) * side;
       const Vec3T<Float> normal = load3(points.gx, points.gy, points.gz, g);

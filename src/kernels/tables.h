@@ -8,6 +8,9 @@ namespace VITRAL_ISA {
 void primary_rays(const Pinhole& camera, int x, int y, RayPacket& rays);
 void trace_closest(const KdView& tree, const RayPacket& rays, HitPacket& hits);
 uint64_t trace_any(const KdView& tree, const RayPacket& rays, GlassRule glass);
+uint64_t surface_points(const KdTriangle* triangles, const RayPacket& rays, const HitPacket& hits,
+                        const OffsetRule& offset, PointPacket& out);
+void mirror_rays(const PointPacket& points, RayPacket& rays);
 void shadow_rays(const Light& light, const PointPacket& points, RayPacket& rays);
 void ambient_occlusion(const KdView& tree, const PointPacket& points, const AmbientSettings& settings,
                        uint32_t* free_rays);

@@ -8,8 +8,9 @@
 namespace vitral {
 
 // The mirror direction of unit `d` about unit `n`; dot(d, n) may have either sign.
-static inline Vec3 reflect(const Vec3& d, const Vec3& n) {
-  return d - n * (2 * dot(d, n));
+template <class F>
+static inline Vec3T<F> reflect(const Vec3T<F>& d, const Vec3T<F>& n) {
+  return d - n * (F(2.0f) * dot(d, n));
 }
 
 // 1 - eta^2 (1 - cos_i^2): the squared cosine of the refracted ray (Snell's law); negative at total

@@ -24,9 +24,11 @@ static inline uint32_t pixel_key(int x, int y, uint32_t seed) {
 static inline uint32_t branch_key(uint32_t key, uint32_t branch) {
   return hash32(key ^ (branch * 0x9e3779b9u));
 }
+// Keys are hashes already: what is added per sample only has to be odd.
+inline constexpr uint32_t kSampleStep = 0x9e3779b9u;
 template <class U>
-static inline U sample_hash(const U& key, uint32_t sample) {
-  return hash32(key + U(sample * 0x9e3779b9u));
+static inline U sample_hash(const U& key, uint32_t sample, uint32_t step = kSampleStep) {
+  return hash32(key + U(sample * step));
 }
 
 }  // namespace vitral

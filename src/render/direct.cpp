@@ -22,7 +22,7 @@ Vec3 unblocked(const Light& light, const Material& material, const SurfacePacket
   if (!(cosine > 0)) return {0, 0, 0};
   Vec3 sum = Vec3{s.r[lane], s.g[lane], s.b[lane]} * cosine;
   if (material.shininess > 0 && luminance(material.specular) > 0) {
-    const Vec3 halfway = to_light + get(s.vx, s.vy, s.vz, lane);
+    const Vec3 halfway = to_light + get(s.points.vx, s.points.vy, s.points.vz, lane);
     const float squared = dot(halfway, halfway);
     const float highlight = squared > 0 ? dot(n, halfway) / square_root(squared) : 0.0f;
     if (highlight > 0) sum += material.specular * power(least(highlight, 1.0f), material.shininess);

@@ -1,6 +1,8 @@
 // What the passes of one frame share, and what each worker keeps to itself.
 #pragma once
 #include "kernels/kernels.h"
+#include "parallel/parallel_for.h"
+#include "raster/frame.h"
 #include "render/accelerator.h"
 #include "render/surface.h"
 #include "vitral/render.h"
@@ -19,12 +21,18 @@ struct FrameContext {
   const Accelerator& accelerator;
   const Kernels& kernels;
   Pinhole camera;
+  OffsetRule offset;                   // where secondary rays start
+  uint32_t sample_step;                // of the ambient rays' jitter
   const RasterView* raster;            // null: primary rays are traced
   float least_importance;              // settings.min_importance, at least 1/4096: what a surface sends
                                        // on weighs no more than what came, so no pixel has more paths
   int ao_strata;                       // n of n x n samples
   std::vector<float> ao_of_free_rays;  // (k / N)^exponent for k = 0..N
 };
+
+// Throws UsageError when the instruction set is not there. Refers to its arguments; `raster` is null.
+FrameContext make_context(const Scene& scene, const Accelerator& accelerator, const Camera& camera,
+                          const Settings& settings);
 
 enum class Pass { raster, shadows, reflection, refraction, ao, shade, resolve };
 inline constexpr size_t kPasses = 7;
@@ -71,6 +79,10 @@ struct LightDetail {
   float ao[kPacketSize];      // 0..1
 };
 
+// primary.cpp: the scene's triangles on the screen, in bins. Throws Interrupted.
+RasterView setup_raster(const FrameContext& frame, const Rectangle& crop, ThreadPool& pool,
+                        const Control& control, RasterFrame& raster);
+
 // primary.cpp: what the camera sees. First the tile, when it is rasterized; then block by block the
 // rays through the pixel centres and their hits, unless the rasterizer saw nothing in the block.
 // `lanes` are the pixels wanted.
@@ -84,11 +96,13 @@ void primary_hits(const FrameContext& frame, const TileVisibility& visibility, i
 Rgb8 encode_pixel(Vec3& color, uint64_t& not_finite);
 
 // shadow.cpp: how much of the light arrives at each point, per colour channel: 1 lit (or facing
-// away), 0 blocked, between for glass.
-void light_visibility(const FrameContext& frame, const Light& light, const PointPacket& points,
-                      PassTally& tally, ColorPacket& visibility);
+// away), 0 blocked, between for glass. Returns the points from which something opaque blocks it.
+uint64_t light_visibility(const FrameContext& frame, const Light& light, const PointPacket& points,
+                          PassTally& tally, ColorPacket& visibility);
 
-// ambient.cpp: (free/N)^exponent of each live point.
+// ambient.cpp: how many of the N ambient rays of each live point are free, and (free/N)^exponent.
+void count_free_rays(const FrameContext& frame, const PointPacket& points, PassTally& tally,
+                     uint32_t* free_rays);
 void ambient_visibility(const FrameContext& frame, const PointPacket& points, PassTally& tally,
                         float* visibility);
 
@@ -108,11 +122,15 @@ struct Path {
   PathKind root;  // of the first generation
 };
 
+// glass.cpp: the camera's rays to the points of a block whose corner is (x, y) in its tile, as paths.
+void begin_paths(const PointPacket& points, int x, int y, Path* paths);
+
 // glass.cpp: the reflected and refracted rays that start at a surface. Lane i belongs to parents[i].
 void spawn_paths(const FrameContext& frame, const SurfacePacket& surfaces, const Path* parents,
                  std::vector<Path>& out);
 
-// glass.cpp: follows paths until none is left; calls nothing back, adds weight * light to the pixels.
+// glass.cpp: follows paths until none is left and adds weight * light to the pixels. Returns how many of
+// them met something.
 struct PathSums {
   Vec3* pixels;      // of the tile; reflection and refraction together
   Vec3* reflection;  // the part whose first ray was a reflection; may be null
@@ -121,6 +139,6 @@ struct PathSums {
 struct PathScratch {
   std::vector<Path> current, next, sorted;
 };
-void trace_paths(const FrameContext& frame, PathScratch& scratch, PassTally& tally, const PathSums& sums);
+uint64_t trace_paths(const FrameContext& frame, PathScratch& scratch, PassTally& tally, const PathSums& sums);
 
 }  // namespace vitral

@@ -67,7 +67,7 @@ void spawn_at(const FrameContext& frame, const SurfacePacket& s, int lane, const
   const Material& m = frame.scene.materials[s.material[lane]];
   const Vec3 position = get(s.points.px, s.points.py, s.points.pz, lane);
   const Vec3 geometric = get(s.points.gx, s.points.gy, s.points.gz, lane);
-  const Vec3 incoming = -get(s.vx, s.vy, s.vz, lane);
+  const Vec3 incoming = -get(s.points.vx, s.points.vy, s.points.vz, lane);
   // A bent normal that faces away from the viewer cannot say how light bends.
   Vec3 n = get(s.points.nx, s.points.ny, s.points.nz, lane);
   if (!(dot(n, incoming) < -1e-4f)) n = geometric;
@@ -106,9 +106,10 @@ void sort_paths(const std::vector<Path>& paths, std::vector<Path>& sorted) {
   for (const Path& p : paths) sorted[first[bucket(p)]++] = p;
 }
 
-// Traces and lights up to 64 paths of one kind, adds their light up, spawns the next generation.
-void trace_packet(const FrameContext& frame, const Path* paths, int count, std::vector<Path>& next,
-                  PassTally& tally, const PathSums& sums) {
+// Traces and lights up to 64 paths of one kind, adds their light up, spawns the next generation. Returns
+// those that met something.
+uint64_t trace_packet(const FrameContext& frame, const Path* paths, int count, std::vector<Path>& next,
+                      PassTally& tally, const PathSums& sums) {
   RayPacket rays;
   HitPacket hits;
   SurfacePacket surfaces;
@@ -127,7 +128,7 @@ void trace_packet(const FrameContext& frame, const Path* paths, int count, std::
   }
   {
     const PassTimer timer(tally, Pass::shade);
-    make_surfaces(frame.scene, rays, hits, rays.live, surfaces);
+    make_surfaces(frame, rays, hits, surfaces);
   }
   ColorPacket light;
   LightDetail detail;
@@ -143,9 +144,19 @@ void trace_packet(const FrameContext& frame, const Path* paths, int count, std::
     if (part) part[p.pixel] += add;
   }
   spawn_paths(frame, surfaces, paths, next);
+  return surfaces.points.live;
 }
 
 }  // namespace
+
+void begin_paths(const PointPacket& points, int x, int y, Path* paths) {
+  for (int lane = 0; lane < kPacketSize; ++lane) {
+    paths[lane] = {};
+    paths[lane].weight = {1, 1, 1};
+    paths[lane].key = points.key[lane];
+    paths[lane].pixel = static_cast<uint16_t>((y + lane / kBlockSide) * kTileSide + x + lane % kBlockSide);
+  }
+}
 
 void spawn_paths(const FrameContext& frame, const SurfacePacket& surfaces, const Path* parents,
                  std::vector<Path>& out) {
@@ -156,7 +167,9 @@ void spawn_paths(const FrameContext& frame, const SurfacePacket& surfaces, const
   }
 }
 
-void trace_paths(const FrameContext& frame, PathScratch& scratch, PassTally& tally, const PathSums& sums) {
+uint64_t trace_paths(const FrameContext& frame, PathScratch& scratch, PassTally& tally,
+                     const PathSums& sums) {
+  uint64_t met = 0;
   while (!scratch.current.empty()) {
     sort_paths(scratch.current, scratch.sorted);
     scratch.next.clear();
@@ -164,11 +177,14 @@ void trace_paths(const FrameContext& frame, PathScratch& scratch, PassTally& tal
     for (size_t first = 0; first < paths.size();) {
       size_t end = first + 1;
       while (end < paths.size() && end - first < kPacketSize && paths[end].kind == paths[first].kind) ++end;
-      trace_packet(frame, &paths[first], static_cast<int>(end - first), scratch.next, tally, sums);
+      const uint64_t hits =
+          trace_packet(frame, &paths[first], static_cast<int>(end - first), scratch.next, tally, sums);
+      met += static_cast<uint64_t>(__builtin_popcountll(hits));
       first = end;
     }
     scratch.current.swap(scratch.next);
   }
+  return met;
 }
 
 }  // namespace vitral

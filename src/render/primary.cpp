@@ -1,10 +1,25 @@
 // What the camera sees: the rasterizer's answer, or the tracer's. Where both see
 // the same triangle they give the same hit; at silhouettes the rasterizer's snapped edges decide.
 #include "render/frame.h"
+#include "vitral/error.h"
 
 #include <algorithm>
 
 namespace vitral {
+
+RasterView setup_raster(const FrameContext& frame, const Rectangle& crop, ThreadPool& pool,
+                        const Control& control, RasterFrame& raster) {
+  const ForEach for_each = [&](size_t count, const std::function<void(size_t)>& body) {
+    pool.parallel_for(count, [&](size_t i, size_t) {
+      if (control.stop.load(std::memory_order_relaxed)) throw Interrupted();
+      body(i);
+    });
+  };
+  setup_frame(frame.camera, frame.settings.width, frame.settings.height, crop, frame.scene.mesh, for_each,
+              raster);
+  return make_view(raster, frame.camera, frame.accelerator.triangles.data(),
+                   &frame.accelerator.view.cut_outs);
+}
 
 void rasterize_tile(const FrameContext& frame, int tile_x, int tile_y, PassTally& tally,
                     TileVisibility& visibility) {

@@ -11,7 +11,6 @@
 #include "render/render.h"
 
 #include "math/elementary.h"
-#include "raster/frame.h"
 #include "render/frame.h"
 #include "render/kernel_choice.h"
 #include "render/tile.h"
@@ -32,22 +31,6 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-// Triangles on the screen, in bins.
-RasterView setup_raster(const FrameContext& frame, const Rectangle& crop, ThreadPool& pool,
-                        const Control& control, PassTally& tally, RasterFrame& raster) {
-  const PassTimer timer(tally, Pass::raster);
-  const ForEach for_each = [&](size_t count, const std::function<void(size_t)>& body) {
-    pool.parallel_for(count, [&](size_t i, size_t) {
-      if (control.stop.load(std::memory_order_relaxed)) throw Interrupted();
-      body(i);
-    });
-  };
-  setup_frame(frame.camera, frame.settings.width, frame.settings.height, crop, frame.scene.mesh, for_each,
-              raster);
-  return make_view(raster, frame.camera, frame.accelerator.triangles.data(),
-                   &frame.accelerator.view.cut_outs);
-}
-
 void collect_stats(const FrameContext& frame, const std::vector<Worker>& workers, Stats& stats) {
   const KdTree& tree = frame.accelerator.all;
   stats.isa = frame.kernels.isa;
@@ -55,7 +38,7 @@ void collect_stats(const FrameContext& frame, const std::vector<Worker>& workers
   stats.triangles = frame.scene.mesh.triangles.size();
   stats.dropped_triangles = frame.scene.dropped_triangles;
   stats.tree_nodes = tree.nodes.size();
-  stats.tree_bytes = tree.nodes.size() * sizeof(KdNode) + tree.references.size() * sizeof(uint32_t);
+  stats.tree_bytes = tree_bytes(tree);
   for (size_t p = 0; p < kPasses; ++p) {
     PassStats total{kPassNames[p], 0, 0};
     for (const Worker& w : workers) {
@@ -79,22 +62,7 @@ Frame render_frame(const Scene& scene, const Accelerator& accelerator, const Cam
   const auto start = std::chrono::steady_clock::now();
   const Rectangle crop = crop_of(settings);
 
-  FrameContext frame{scene,
-                     settings,
-                     accelerator,
-                     choose_kernels(settings.isa),
-                     make_pinhole(camera, settings.width, settings.height),
-                     nullptr,
-                     0,
-                     0,
-                     {}};
-  frame.least_importance = greatest(settings.min_importance, 1.0f / 4096);
-  frame.ao_strata = static_cast<int>(square_root(static_cast<float>(settings.ao_samples)) + 0.5f);
-  for (int k = 0; k <= settings.ao_samples; ++k) {
-    frame.ao_of_free_rays.push_back(
-        power(static_cast<float>(k) / static_cast<float>(settings.ao_samples), settings.ao_exponent));
-  }
-
+  FrameContext frame = make_context(scene, accelerator, camera, settings);
   Frame out;
   if (settings.keep_radiance) out.radiance = Image<Vec3>(crop.width, crop.height);
   out.pixels = Image<Rgb8>(crop.width, crop.height);
@@ -104,7 +72,8 @@ Frame render_frame(const Scene& scene, const Accelerator& accelerator, const Cam
   RasterFrame raster;
   RasterView raster_view{};
   if (settings.primary == Primary::raster) {
-    raster_view = setup_raster(frame, crop, pool, control, setup, raster);
+    const PassTimer timer(setup, Pass::raster);
+    raster_view = setup_raster(frame, crop, pool, control, raster);
     frame.raster = &raster_view;
   }
 
@@ -134,6 +103,28 @@ Frame render_frame(const Scene& scene, const Accelerator& accelerator, const Cam
   collect_stats(frame, workers, out.stats);
   out.stats.frame_seconds = seconds_since(start);
   return out;
+}
+
+FrameContext make_context(const Scene& scene, const Accelerator& accelerator, const Camera& camera,
+                          const Settings& settings) {
+  FrameContext frame{scene,
+                     settings,
+                     accelerator,
+                     choose_kernels(settings.isa),
+                     make_pinhole(camera, settings.width, settings.height),
+                     {0},
+                     kSampleStep,
+                     nullptr,
+                     0,
+                     0,
+                     {}};
+  frame.least_importance = greatest(settings.min_importance, 1.0f / 4096);
+  frame.ao_strata = static_cast<int>(square_root(static_cast<float>(settings.ao_samples)) + 0.5f);
+  for (int k = 0; k <= settings.ao_samples; ++k) {
+    frame.ao_of_free_rays.push_back(
+        power(static_cast<float>(k) / static_cast<float>(settings.ao_samples), settings.ao_exponent));
+  }
+  return frame;
 }
 
 // Without rays there is nothing to trace.

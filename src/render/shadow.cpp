@@ -20,23 +20,24 @@ Vec3 glass_tint(const FrameContext& frame, Ray ray) {
 
 }  // namespace
 
-void light_visibility(const FrameContext& frame, const Light& light, const PointPacket& points,
-                      PassTally& tally, ColorPacket& visibility) {
+uint64_t light_visibility(const FrameContext& frame, const Light& light, const PointPacket& points,
+                          PassTally& tally, ColorPacket& visibility) {
   for (Vec3& v : visibility.color) v = {1, 1, 1};
-  if (!frame.settings.effects.shadows) return;
+  if (!frame.settings.effects.shadows) return 0;
   const PassTimer timer(tally, Pass::shadows);
   RayPacket rays;
   frame.kernels.shadow_rays(light, points, rays);
-  if (rays.live == 0) return;
+  if (rays.live == 0) return 0;
   count_rays(tally, Pass::shadows, rays.live);
   const uint64_t blocked = frame.kernels.trace_any(frame.accelerator.view, rays, GlassRule::passes);
-  for (int lane = 0; lane < kPacketSize; ++lane) {
-    if (blocked >> lane & 1) {
-      visibility.color[lane] = {0, 0, 0};
-    } else if (frame.accelerator.has_glass && (rays.live >> lane & 1)) {
-      visibility.color[lane] = glass_tint(frame, ray_of(rays, lane));
-    }
+  for (uint64_t left = blocked; left != 0; left &= left - 1)
+    visibility.color[__builtin_ctzll(left)] = {0, 0, 0};
+  if (!frame.accelerator.has_glass) return blocked;
+  for (uint64_t left = rays.live & ~blocked; left != 0; left &= left - 1) {
+    const int lane = __builtin_ctzll(left);
+    visibility.color[lane] = glass_tint(frame, ray_of(rays, lane));
   }
+  return blocked;
 }
 
 }  // namespace vitral

@@ -6,18 +6,19 @@
 
 namespace vitral {
 
+struct FrameContext;
+
 struct alignas(64) SurfacePacket {
   PointPacket points;
-  float vx[kPacketSize], vy[kPacketSize], vz[kPacketSize];  // to the viewer, unit
-  float r[kPacketSize], g[kPacketSize], b[kPacketSize];     // albedo: Kd times map_Kd
-  float t[kPacketSize];                                     // of the ray that came here
+  float r[kPacketSize], g[kPacketSize], b[kPacketSize];  // albedo: Kd times map_Kd
+  float t[kPacketSize];                                  // of the ray that came here
   uint32_t material[kPacketSize];
   uint32_t triangle[kPacketSize];
   uint64_t back = 0;  // lanes that see the back of their triangle
 };
 
-// Fills the lanes of `lanes` that hit something and sets points.live to them; keys are the caller's.
-void make_surfaces(const Scene& scene, const RayPacket& rays, const HitPacket& hits, uint64_t lanes,
+// Fills the live rays' lanes that hit something and sets points.live to them; keys are the caller's.
+void make_surfaces(const FrameContext& frame, const RayPacket& rays, const HitPacket& hits,
                    SurfacePacket& out);
 
 }  // namespace vitral

@@ -79,18 +79,15 @@ void render_tile(const FrameContext& frame, const Rectangle& crop, int tile_x, i
     primary_hits(frame, worker.visibility, block, x, y, lanes, worker.tally, rays, hits);
     {
       const PassTimer timer(worker.tally, Pass::shade);
-      make_surfaces(frame.scene, rays, hits, lanes, surfaces);
+      make_surfaces(frame, rays, hits, surfaces);
     }
     if (surfaces.points.live == 0) continue;
-    Path camera_paths[kPacketSize];
     for (int lane = 0; lane < kPacketSize; ++lane) {
-      const int px = x + lane % kBlockSide, py = y + lane / kBlockSide;
-      surfaces.points.key[lane] = pixel_key(px, py, frame.settings.seed);
-      camera_paths[lane] = {};
-      camera_paths[lane].weight = {1, 1, 1};
-      camera_paths[lane].key = surfaces.points.key[lane];
-      camera_paths[lane].pixel = static_cast<uint16_t>((py - tile_y) * kTileSide + (px - tile_x));
+      surfaces.points.key[lane] =
+          pixel_key(x + lane % kBlockSide, y + lane / kBlockSide, frame.settings.seed);
     }
+    Path camera_paths[kPacketSize];
+    begin_paths(surfaces.points, x - tile_x, y - tile_y, camera_paths);
     ColorPacket light;
     LightDetail detail;
     light_surfaces(frame, surfaces, worker.tally, light, detail);

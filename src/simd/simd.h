@@ -324,6 +324,16 @@ static inline Float square_root(Float a) {
   return FloatVector(_mm_sqrt_ps(__m128(a.v)));
 #endif
 }
+static inline Double square_root(const Double& a) {
+#if LANES == 16
+  return {DoubleVector(_mm512_maskz_sqrt_pd(0xff, __m512d(a.lo))),
+          DoubleVector(_mm512_maskz_sqrt_pd(0xff, __m512d(a.hi)))};
+#elif LANES == 8
+  return {DoubleVector(_mm256_sqrt_pd(__m256d(a.lo))), DoubleVector(_mm256_sqrt_pd(__m256d(a.hi)))};
+#else
+  return {DoubleVector(_mm_sqrt_pd(__m128d(a.lo))), DoubleVector(_mm_sqrt_pd(__m128d(a.hi)))};
+#endif
+}
 
 // --- conversions, memory -------------------------------------------------------------------------
 
