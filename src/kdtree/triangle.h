@@ -44,13 +44,46 @@ static inline Vec3T<F> project(const Vec3T<F>& corner, const Shear<F>& shear) {
   return {corner.x - shear.x * corner.z, corner.y - shear.y * corner.z, corner.z};
 }
 
+// Twice the signed areas that the origin makes with the edges, in float. Each is the difference of two
+// products that are rounded once: its sign, where not zero, is that of the exact one or the exact one is 0.
+template <class F>
+static inline Vec3T<F> rounded_edge_values(const Vec3T<F>& a, const Vec3T<F>& b, const Vec3T<F>& c) {
+  return {c.x * b.y - c.y * b.x, a.x * c.y - a.y * c.x, b.x * a.y - b.y * a.x};
+}
+template <class F>
+static inline F least_of(const F& a, const F& b, const F& c) {
+  return least(a, least(b, c));
+}
+template <class F>
+static inline F greatest_of(const F& a, const F& b, const F& c) {
+  return greatest(a, greatest(b, c));
+}
+
 // False where the origin is surely outside the projected triangle.
 template <class F>
 static inline auto may_surround_origin(const Vec3T<F>& a, const Vec3T<F>& b, const Vec3T<F>& c) {
-  const F u0 = c.x * b.y, u1 = c.y * b.x;
-  const F v0 = a.x * c.y, v1 = a.y * c.x;
-  const F w0 = b.x * a.y, w1 = b.y * a.x;
-  return either(both(both(u0 >= u1, v0 >= v1), w0 >= w1), both(both(u0 <= u1, v0 <= v1), w0 <= w1));
+  const Vec3T<F> e = rounded_edge_values(a, b, c);
+  return either(least_of(e.x, e.y, e.z) >= F(0.0f), greatest_of(e.x, e.y, e.z) <= F(0.0f));
+}
+
+// True where a ray surely meets the triangle at t in (tmin, tmax), for tmin >= 0, without t being known.
+// The edge values are off by less than 2^-23 of the largest product that goes into them, and t is a
+// mean of the corners' own with weights that are all positive.
+template <class F, class S>
+static inline auto surely_meets(const Vec3T<F>& a, const Vec3T<F>& b, const Vec3T<F>& c, const S& shear,
+                                const F& tmin, const F& tmax) {
+  const Vec3T<F> e = rounded_edge_values(a, b, c);
+  const F width = greatest_of(absolute(a.x), absolute(b.x), absolute(c.x));
+  const F height = greatest_of(absolute(a.y), absolute(b.y), absolute(c.y));
+  const F tiny = F(1e-35f);
+  const F margin = width * height * F(1.0f / 2097152) + tiny;
+  const auto inside = either(least_of(e.x, e.y, e.z) > margin, greatest_of(e.x, e.y, e.z) < -margin);
+  const auto forward = shear.z > F(0.0f);
+  const F near = select(forward, least_of(a.z, b.z, c.z), -greatest_of(a.z, b.z, c.z));
+  const F far = select(forward, greatest_of(a.z, b.z, c.z), -least_of(a.z, b.z, c.z));
+  const F length = absolute(shear.z);
+  const auto in_range = both(near > tmin * length * F(1.000001f) + tiny, far < tmax * length * F(0.999999f));
+  return both(inside, in_range);
 }
 
 template <class F, class M>
