@@ -1,89 +1,253 @@
 #include "kernels/candidates.h"
 
-#include "simd/simd.h"
+#include "kernels/lanes.h"
+#include "kernels/meet.h"
 
 namespace vitral {
 namespace VITRAL_ISA {
 namespace {
 
-// What the rays of a block can reach.
+inline Vec3T<Float> splat(const Vec3& v) {
+  return {Float(v.x), Float(v.y), Float(v.z)};
+}
+inline Vec3T<Float> absolute_of(const Vec3T<Float>& v) {
+  return {absolute(v.x), absolute(v.y), absolute(v.z)};
+}
+inline void set_component(Vec3& v, int axis, float x) {
+  (axis == 0 ? v.x : axis == 1 ? v.y : v.z) = x;
+}
+
+// What the rays of a block can reach: within the box, above the plane.
 struct Reach {
-  Box box;          // of their points, grown by how far they go and by the traversal's slack
+  Box box;          // of the points, grown by how far the rays go and by the traversal's slack
   float magnitude;  // largest coordinate of the points
   float distance;
+  Vec3 normal;  // of the plane: the points' mean
+  float floor;  // what lies lower than this along it is below the planes of all points
 };
 
+// Rounding moves a point of a triangle, and a point of a ray, by less than 2^-20 of the largest
+// coordinates that go in. Directions are unit within 2^-20, and their polynomials off by 2^-19.
+template <class F>
+inline F margin_of(const F& magnitude, float distance) {
+  return magnitude * F(1.0f / 1048576) + F(distance * (1.0f / 262144));
+}
+
 Reach reach_of(const KdView& tree, const PointPacket& points, float distance) {
-  Box box{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
-  float offset = 0;
-  for (int lane = 0; lane < kPacketSize; ++lane) {
-    if (!(points.live >> lane & 1)) continue;
-    extend(box, Vec3{points.px[lane], points.py[lane], points.pz[lane]});
-    offset = vitral::greatest(points.offset[lane], offset);
-  }
-  const float far = distance * 1.00001f + offset, size = magnitude(box);
-  const float grow = far + traversal_slack(vitral::greatest(tree.magnitude, size + far));
-  return {{box.min - Vec3{grow, grow, grow}, box.max + Vec3{grow, grow, grow}}, size, distance};
-}
-
-bool overlaps(const KdTriangle& t, const Box& box) {
-  for (int a = 0; a < 3; ++a) {
-    const float x = t.corner[0][a], y = t.corner[1][a], z = t.corner[2][a];
-    if (vitral::greatest(x, vitral::greatest(y, z)) < component(box.min, a)) return false;
-    if (vitral::least(x, vitral::least(y, z)) > component(box.max, a)) return false;
-  }
-  return true;
-}
-
-float magnitude_of(const KdTriangle& t) {
-  float m = 0;
-  for (int a = 0; a < 3; ++a) {
-    for (int k = 0; k < 3; ++k) m = vitral::greatest(vitral::absolute(t.corner[k][a]), m);
-  }
-  return m;
-}
-
-// The points whose tangent plane, raised by the offset, the triangle rises above. The margin covers
-// directions that are some ulps below the plane, and hits that are computed off their triangle: by
-// less than 2^-20 of the largest coordinate that goes in.
-uint64_t lanes_above(const KdTriangle& t, const PointPacket& points, const Reach& reach) {
-  const float margin =
-      (vitral::greatest(magnitude_of(t), reach.magnitude) + reach.distance) * (1.0f / 1048576);
-  uint64_t above = 0;
+  Vec3T<Float> low = splat({kInfinity, kInfinity, kInfinity}), high = -low, sum = splat({0, 0, 0});
+  Float least_offset = Float(kInfinity), most_offset = Float(0.0f);
   for (int g = 0; g < kPacketSize; g += kLanes) {
-    const Vec3T<Float> n{load(points.gx + g), load(points.gy + g), load(points.gz + g)};
-    const Vec3T<Float> p{load(points.px + g), load(points.py + g), load(points.pz + g)};
-    Float highest = Float(-kInfinity);
-    for (const float* c : {t.corner[0], t.corner[1], t.corner[2]}) {
-      highest =
-          greatest(dot(n, Vec3T<Float>{Float(c[0]) - p.x, Float(c[1]) - p.y, Float(c[2]) - p.z}), highest);
-    }
-    above |= static_cast<uint64_t>(bits(highest > load(points.offset + g) - Float(margin))) << g;
+    const Mask live = group_mask(points.live, g);
+    const Vec3T<Float> p = load3(points.px, points.py, points.pz, g),
+                       n = load3(points.gx, points.gy, points.gz, g);
+    low = {least(select(live, p.x, low.x), low.x), least(select(live, p.y, low.y), low.y),
+           least(select(live, p.z, low.z), low.z)};
+    high = {greatest(select(live, p.x, high.x), high.x), greatest(select(live, p.y, high.y), high.y),
+            greatest(select(live, p.z, high.z), high.z)};
+    sum = sum + Vec3T<Float>{select(live, n.x, Float(0.0f)), select(live, n.y, Float(0.0f)),
+                             select(live, n.z, Float(0.0f))};
+    const Float offset = load(points.offset + g);
+    least_offset = least(select(live, offset, least_offset), least_offset);
+    most_offset = greatest(select(live, offset, most_offset), most_offset);
   }
-  return above & points.live;
+  Reach reach;
+  const Box box{{least_lane(low.x), least_lane(low.y), least_lane(low.z)},
+                {greatest_lane(high.x), greatest_lane(high.y), greatest_lane(high.z)}};
+  const float offset = greatest_lane(most_offset);
+  const float far = distance * 1.00001f + offset;
+  reach.magnitude = magnitude(box);
+  const float grow = far + traversal_slack(vitral::greatest(tree.magnitude, reach.magnitude + far));
+  reach.box = {box.min - Vec3{grow, grow, grow}, box.max + Vec3{grow, grow, grow}};
+  reach.distance = distance;
+
+  // Any unit vector would do; near the mean the planes of the points differ least from the common one.
+  const Vec3 mean{sum_of_lanes(sum.x), sum_of_lanes(sum.y), sum_of_lanes(sum.z)};
+  const float length_squared = dot(mean, mean);
+  reach.normal = length_squared > 1e-6f ? mean * (1.0f / vitral::square_root(length_squared)) : Vec3{0, 0, 1};
+  Float lowest = Float(kInfinity), deviation = Float(0.0f);
+  for (int g = 0; g < kPacketSize; g += kLanes) {
+    const Mask live = group_mask(points.live, g);
+    const Float height = dot(load3(points.px, points.py, points.pz, g), splat(reach.normal));
+    lowest = least(select(live, height, lowest), lowest);
+    const Vec3T<Float> d = load3(points.gx, points.gy, points.gz, g) - splat(reach.normal);
+    deviation = greatest(select(live, dot(d, d), deviation), deviation);
+  }
+  // What is hit is within `far` of its point, where the planes deviate by no more than this.
+  const float tilt = vitral::square_root(greatest_lane(deviation)) * 1.00001f * far;
+  reach.floor =
+      least_lane(lowest) + least_lane(least_offset) - tilt - 3 * margin_of(reach.magnitude + far, distance);
+  return reach;
 }
 
-void add(const KdView& tree, uint32_t id, const PointPacket& points, const Reach& reach, Candidates& out) {
-  const KdTriangle& t = tree.triangles[id];
-  if ((t.flags & kGlassTriangle) || !overlaps(t, reach.box)) return;
-  for (int i = 0; i < out.count; ++i) {
-    if (out.triangle[i] == id) return;
+// --- collecting ------------------------------------------------------------------------------------
+
+// Up to kLanes triangles: those that overlap the box and rise above the floor are added.
+void add(const KdView& tree, const Reach& reach, const uint32_t* ids, int count, Candidates& out) {
+  alignas(64) float corner[9][kLanes];
+  alignas(64) uint32_t id[kLanes];
+  for (int i = 0; i < kLanes; ++i) {
+    id[i] = ids[i < count ? i : 0];
+    const float* c = tree.triangles[id[i]].corner[0];
+    for (int k = 0; k < 9; ++k) corner[k][i] = c[k];
   }
-  const uint64_t lanes = lanes_above(t, points, reach);
-  if (lanes == 0) return;
-  if (out.count < kMaxCandidates) {
-    out.triangle[out.count] = id;
-    out.lanes[out.count] = lanes;
+  const Vec3T<Float> a{load(corner[0]), load(corner[1]), load(corner[2])};
+  const Vec3T<Float> b{load(corner[3]), load(corner[4]), load(corner[5])};
+  const Vec3T<Float> c{load(corner[6]), load(corner[7]), load(corner[8])};
+  const Box& box = reach.box;
+  const auto overlap = [](Float x, Float y, Float z, float low, float high) {
+    return both(greatest_of(x, y, z) >= Float(low), least_of(x, y, z) <= Float(high));
+  };
+  Mask wanted =
+      both(overlap(a.x, b.x, c.x, box.min.x, box.max.x), overlap(a.y, b.y, c.y, box.min.y, box.max.y));
+  wanted = both(wanted, overlap(a.z, b.z, c.z, box.min.z, box.max.z));
+  const Vec3T<Float> n = splat(reach.normal), m = absolute_of(n);
+  const Float height = greatest_of(dot(n, a), dot(n, b), dot(n, c));
+  const Float size = greatest_of(dot(absolute_of(a), m), dot(absolute_of(b), m), dot(absolute_of(c), m));
+  wanted = both(wanted, invert(height < Float(reach.floor) - size * Float(1.0f / 1048576)));
+  wanted = both(wanted, mask_of_bits((1ull << count) - 1));
+  compress(out.triangle + out.count, load(id), wanted);
+  out.count += __builtin_popcount(bits(wanted));
+}
+
+// The cell of a node, as far as the reach's box goes, is it above the floor?
+bool rises(const Box& cell, const Reach& reach) {
+  float height = 0, size = 0;
+  for (int a = 0; a < 3; ++a) {
+    const float n = component(reach.normal, a);
+    const float low = component(cell.min, a) * n, high = component(cell.max, a) * n;
+    height += vitral::greatest(low, high);
+    size += vitral::greatest(vitral::absolute(low), vitral::absolute(high));
   }
-  ++out.count;
+  return !(height < reach.floor - size * (1.0f / 1048576));
+}
+
+// All leaves that the box overlaps, but for those below the floor.
+void collect(const KdView& tree, const Reach& reach, int most_leaves, Candidates& out) {
+  constexpr int kSeen = 256;  // triangles met lately, so that few are taken twice
+  uint32_t seen[kSeen];
+  for (int i = 0; i < kSeen; ++i) seen[i] = kNoTriangle;
+  uint32_t ids[kLanes];
+  int pending = 0, leaves = 0, waiting = 0;
+  struct Waiting {
+    Box cell;
+    uint32_t node;
+  } stack[kMaxTreeDepth];
+  const float slack = traversal_slack(vitral::greatest(tree.magnitude, reach.magnitude + reach.distance));
+  uint32_t node = out.node;
+  Box cell = reach.box;
+  for (;;) {
+    const KdNode& n = tree.nodes[node];
+    if (!is_leaf(n)) {
+      // A cell is as large as the planes above it say, and a little larger.
+      const int a = axis(n);
+      const float low = component(cell.min, a), high = component(cell.max, a), s = split(n);
+      const bool below = low <= s, above = high >= s;
+      Box upper = cell;
+      set_component(upper.min, a, vitral::greatest(low, s - slack));
+      if (below) set_component(cell.max, a, vitral::least(high, s + slack));
+      if (below && above) {
+        if (rises(upper, reach)) stack[waiting++] = {upper, child(n) + 1};
+        node = child(n);
+      } else {
+        if (!below) cell = upper;
+        node = child(n) + (below ? 0u : 1u);
+        continue;
+      }
+      if (rises(cell, reach)) continue;
+    } else {
+      if (++leaves > most_leaves) out.count = kMaxCandidates + 1;
+      for (uint32_t i = 0; i < count(n) && out.count <= kMaxCandidates; ++i) {
+        const uint32_t id = tree.references[first_reference(n) + i];
+        if (seen[id % kSeen] == id) continue;
+        seen[id % kSeen] = id;
+        if (tree.triangles[id].flags & kGlassTriangle) continue;
+        ids[pending++] = id;
+        if (pending < kLanes) continue;
+        add(tree, reach, ids, pending, out);
+        pending = 0;
+      }
+      if (out.count > kMaxCandidates) return;
+    }
+    if (waiting == 0) break;
+    --waiting;
+    node = stack[waiting].node, cell = stack[waiting].cell;
+  }
+  if (pending > 0) add(tree, reach, ids, pending, out);
+}
+
+// --- classifying -----------------------------------------------------------------------------------
+
+// How far a point is from the triangle's box, squared: no more than how far it is from the triangle.
+inline Float distance_squared(const Vec3T<Float>& p, const Vec3& low, const Vec3& high) {
+  const Float zero = Float(0.0f);
+  const Float x = greatest(greatest(Float(low.x) - p.x, p.x - Float(high.x)), zero);
+  const Float y = greatest(greatest(Float(low.y) - p.y, p.y - Float(high.y)), zero);
+  const Float z = greatest(greatest(Float(low.z) - p.z, p.z - Float(high.z)), zero);
+  return (x * x + y * y) + z * z;
+}
+
+// Least and greatest of a . (corner - p) over the corners.
+struct Extent {
+  Float low, high;
+};
+inline Extent extent_along(const Vec3T<Float>& axis, const Vec3T<Float>* corner) {
+  const Float a = dot(axis, corner[0]), b = dot(axis, corner[1]), c = dot(axis, corner[2]);
+  return {least_of(a, b, c), greatest_of(a, b, c)};
+}
+
+// Which points may see a triangle, how high and where. A direction that dips under the geometric surface
+// is mirrored back above it: that raises it over the shading normal's horizon, and turns it by no more
+// than twice the squared sine between the normals.
+void classify(const KdTriangle& t, const PointPacket& points, const Frames& frames, const Reach& reach, int i,
+              Candidates& out) {
+  const Vec3 c[3] = {{t.corner[0][0], t.corner[0][1], t.corner[0][2]},
+                     {t.corner[1][0], t.corner[1][1], t.corner[1][2]},
+                     {t.corner[2][0], t.corner[2][1], t.corner[2][2]}};
+  Box box{c[0], c[0]};
+  extend(box, c[1]), extend(box, c[2]);
+  const float margin =
+      margin_of(vitral::greatest(magnitude(box), reach.magnitude) + reach.distance, reach.distance);
+  for (int h = 0; h < kHeights; ++h) out.height[h][i] = 0;
+  for (int q = 0; q < kQuadrants; ++q) out.quadrant[q][i] = 0;
+  for (int g = 0; g < kPacketSize; g += kLanes) {
+    if (group_empty(points.live, g)) continue;
+    const Vec3T<Float> p = load3(points.px, points.py, points.pz, g);
+    const Vec3T<Float> relative[3] = {splat(c[0]) - p, splat(c[1]) - p, splat(c[2]) - p};
+    const Vec3T<Float> geometric = load3(points.gx, points.gy, points.gz, g),
+                       n = load3(points.nx, points.ny, points.nz, g);
+    const Float offset = load(points.offset + g);
+    const Mask above =
+        both(extent_along(geometric, relative).high > offset - Float(margin), group_mask(points.live, g));
+    if (!any(above)) continue;
+
+    // Seen from the ray's origin, `offset` above the point.
+    const Float give = offset + Float(margin);
+    const Float height = greatest(extent_along(n, relative).high + give, Float(0.0f));
+    const Float away = greatest(square_root(distance_squared(p, box.min, box.max)) - give, Float(0.0f));
+    const Mask near = both(above, away <= Float(reach.distance * 1.00001f));
+    const Float height_squared = height * height, away_squared = away * away * Float(0.9999f);
+    for (int h = 0; h < kHeights; ++h) {
+      const Mask high = height_squared >= away_squared * Float(static_cast<float>(h) * (1.0f / kHeights));
+      out.height[h][i] |= static_cast<uint64_t>(bits(both(near, high))) << g;
+    }
+    const Float cosine = dot(n, geometric);
+    const Float turn = greatest(Float(1.0f) - cosine * cosine, Float(0.0f)) * Float(2.0f * reach.distance);
+    const Float room = give + turn;
+    const Extent x = extent_along(load3(frames.tx, frames.ty, frames.tz, g), relative);
+    const Extent y = extent_along(load3(frames.bx, frames.by, frames.bz, g), relative);
+    const Mask right = x.high >= -room, left = x.low <= room, up = y.high >= -room, down = y.low <= room;
+    const Mask quadrant[kQuadrants] = {both(right, up), both(left, up), both(left, down), both(right, down)};
+    for (int q = 0; q < kQuadrants; ++q)
+      out.quadrant[q][i] |= static_cast<uint64_t>(bits(both(near, quadrant[q]))) << g;
+  }
 }
 
 }  // namespace
 
-void find_candidates(const KdView& tree, const PointPacket& points, float distance, Candidates& out) {
+void find_candidates(const KdView& tree, const PointPacket& points, const Frames& frames, float distance,
+                     int most_leaves, Candidates& out) {
   const Reach reach = reach_of(tree, points, distance);
   const Box& box = reach.box;
-  out.count = 0;
 
   // Down to where the box lies on both sides of the plane: nothing outside this node can be met.
   uint32_t node = 0;
@@ -95,28 +259,18 @@ void find_candidates(const KdView& tree, const PointPacket& points, float distan
     node = child(n) + (above ? 1u : 0u);
   }
   out.node = node;
+  out.count = 0;
+  collect(tree, reach, most_leaves, out);
+  if (out.count > kMaxCandidates) return;
 
-  // All leaves that the box overlaps, until there are too many triangles, or too much empty space.
-  constexpr int kMaxVisits = 200;
-  uint32_t stack[kMaxTreeDepth];
-  int waiting = 0;
-  for (int visits = 0;; ++visits) {
-    if (visits == kMaxVisits) out.count = kMaxCandidates + 1;
-    if (out.count > kMaxCandidates) return;
-    const KdNode& n = tree.nodes[node];
-    if (is_leaf(n)) {
-      for (uint32_t i = 0; i < count(n) && out.count <= kMaxCandidates; ++i) {
-        add(tree, tree.references[first_reference(n) + i], points, reach, out);
-      }
-      if (waiting == 0) return;
-      node = stack[--waiting];
-      continue;
-    }
-    const bool below = component(box.min, axis(n)) <= split(n),
-               above = component(box.max, axis(n)) >= split(n);
-    if (below && above) stack[waiting++] = child(n) + 1;
-    node = child(n) + (below ? 0u : 1u);
+  // Those that no point can see are dropped.
+  int kept = 0;
+  for (int i = 0; i < out.count; ++i) {
+    out.triangle[kept] = out.triangle[i];
+    classify(tree.triangles[out.triangle[kept]], points, frames, reach, kept, out);
+    if (out.height[0][kept] != 0) ++kept;
   }
+  out.count = kept;
 }
 
 }  // namespace VITRAL_ISA

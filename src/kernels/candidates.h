@@ -1,10 +1,14 @@
-// Short rays from one block of points: the few triangles that any of them could meet.
+// Ambient rays from one block of points: the few triangles that any of them could meet, and for each
+// which of them could.
 //
 // The ambient rays of a block start in one small box and end within a known distance. All they can
-// meet lies in the leaves that the box, grown by that distance, overlaps. When these hold few
-// triangles, every ray is tested against them and the tree is not walked at all; when they hold none,
-// there is nothing to trace. What cannot be met is left out by margins that cover all rounding, so
-// the answer is the same as the walk's.
+// meet lies in the leaves that the box, grown by that distance, overlaps, and above the planes through
+// the points. Of a triangle that is left each point knows two more things: how high it can stand over
+// the horizon at most, and in which quadrants around the normal. A stratum of the hemisphere has a least
+// height and lies in one quadrant, or a few: most pairs of a stratum and a triangle need no test, and
+// where no triangle is left for a stratum, none of its rays is even made.
+//
+// All of it is by margins that cover every rounding, so that the answer is that of the walk.
 #pragma once
 #include "kdtree/kdtree.h"
 #include "kernels/points.h"
@@ -12,21 +16,31 @@
 namespace vitral {
 namespace VITRAL_ISA {
 
-inline constexpr int kMaxCandidates = 24;
+inline constexpr int kMaxCandidates = 256;
+inline constexpr int kHeights = 4;    // d . n at least sqrt(h / 4)
+inline constexpr int kQuadrants = 4;  // signs of d . t and d . b: ++ -+ -- +-
+
+// Tangent frames of the points.
+struct alignas(64) Frames {
+  float tx[kPacketSize], ty[kPacketSize], tz[kPacketSize];
+  float bx[kPacketSize], by[kPacketSize], bz[kPacketSize];
+};
 
 struct Candidates {
-  int count;      // more than kMaxCandidates: too many, walk from `node` instead
-  uint32_t node;  // the deepest node that holds everything
-  uint32_t triangle[kMaxCandidates];
-  uint64_t lanes[kMaxCandidates];  // the points that may see it
+  int count;                                      // more than kMaxCandidates: too many, walk from `node`
+  uint32_t node;                                  // the deepest node that holds everything
+  uint32_t triangle[kMaxCandidates + 16];         // 16: the widest register
+  uint64_t height[kHeights][kMaxCandidates];      // the points that may see it that high
+  uint64_t quadrant[kQuadrants][kMaxCandidates];  // or there
 };
 
 // Opaque triangles that rays of length `distance` may meet, from the live points raised by their
-// offsets along their geometric normals, going nowhere below the planes through them.
-void find_candidates(const KdView& tree, const PointPacket& points, float distance, Candidates& out);
+// offsets along their geometric normals, going nowhere below the planes through them. Gives up, which
+// reads as too many, after `most_leaves` leaves.
+void find_candidates(const KdView& tree, const PointPacket& points, const Frames& frames, float distance,
+                     int most_leaves, Candidates& out);
 
-// In trace.cpp: the live rays that meet any of the candidates; the any-hit walk below a node.
-uint64_t test_any(const KdView& tree, const Candidates& candidates, const RayPacket& rays);
+// In trace.cpp: the any-hit walk below a node.
 uint64_t trace_any_from(const KdView& tree, uint32_t node, const RayPacket& rays, GlassRule glass);
 
 }  // namespace VITRAL_ISA

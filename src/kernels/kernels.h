@@ -35,6 +35,11 @@ struct Kernels {
   // One ray from every live point that faces the light to the light; sets rays.live.
   void (*shadow_rays)(const Light& light, const PointPacket& points, RayPacket& rays);
 
+  // The same rays, for up to 16 packets of points that lie near each other, and which of them meet
+  // anything; the answers are those of trace_any.
+  void (*trace_shadows)(const KdView& tree, const Light& light, GlassRule glass,
+                        const PointPacket* const* points, int count, ShadowAnswer* out);
+
   // How many of the strata * strata ambient rays of each live point meet nothing opaque.
   void (*ambient_occlusion)(const KdView& tree, const PointPacket& points, const AmbientSettings& settings,
                             uint32_t* free_rays);

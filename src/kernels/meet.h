@@ -27,15 +27,6 @@ static inline bool group_empty(uint64_t lanes, int g) {
   return ((lanes >> g) & all) == 0;
 }
 
-// The largest number of a register.
-static inline float greatest_lane(Float v) {
-  alignas(64) float lanes[kLanes];
-  store(lanes, v);
-  float most = lanes[0];
-  for (int i = 1; i < kLanes; ++i) most = vitral::greatest(lanes[i], most);
-  return most;
-}
-
 // Which rays can be traced at all, how far out their origins lie, and their shears.
 static inline void derive_shears(const RayPacket& rays, Shears& d) {
   d.z_is[0] = d.z_is[1] = d.z_is[2] = d.traceable = 0;
@@ -158,6 +149,15 @@ static inline bool find_viewer(const RayPacket& rays, const Shears& d, uint64_t 
     if ((lanes & ~d.z_is[z]) == 0) return true;
   }
   return false;
+}
+
+// Those of `lanes` that meet the triangle.
+static inline uint64_t test_any(const KdView& tree, const RayPacket& rays, const Shears& d, uint64_t lanes,
+                         uint32_t id) {
+  Viewer viewer;
+  return find_viewer(rays, d, lanes, viewer)
+             ? test_triangle<Query::any, true>(tree, rays, d, viewer, lanes, id, nullptr)
+             : test_triangle<Query::any, false>(tree, rays, d, viewer, lanes, id, nullptr);
 }
 
 }  // namespace VITRAL_ISA

@@ -28,10 +28,19 @@ struct OffsetRule {
   float fixed;  // 0: ray_offset() of the point's own triangle
 };
 
+// Whether work is skipped that cannot change the answer. Tests compare the two.
+enum class Shortcuts { taken, none };
+
+// Of 64 points: those that face a light, and those of them that something keeps from it.
+struct ShadowAnswer {
+  uint64_t facing, blocked;
+};
+
 struct AmbientSettings {
   int strata;                          // n of n x n samples
   float distance;                      // rays end here
   uint32_t sample_step = kSampleStep;  // see sample_hash()
+  Shortcuts shortcuts = Shortcuts::taken;
 };
 
 }  // namespace vitral

@@ -12,6 +12,8 @@ uint64_t surface_points(const KdTriangle* triangles, const RayPacket& rays, cons
                         const OffsetRule& offset, PointPacket& out);
 void mirror_rays(const PointPacket& points, RayPacket& rays);
 void shadow_rays(const Light& light, const PointPacket& points, RayPacket& rays);
+void trace_shadows(const KdView& tree, const Light& light, GlassRule glass, const PointPacket* const* points,
+                   int count, ShadowAnswer* out);
 void ambient_occlusion(const KdView& tree, const PointPacket& points, const AmbientSettings& settings,
                        uint32_t* free_rays);
 void fill_tile(const RasterView& view, int tile_x, int tile_y, TileVisibility& out);

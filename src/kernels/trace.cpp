@@ -210,21 +210,5 @@ uint64_t trace_any_from(const KdView& tree, uint32_t node, const RayPacket& rays
   return trace<Query::any>(tree, rays, node, glass, nullptr);
 }
 
-uint64_t test_any(const KdView& tree, const Candidates& candidates, const RayPacket& rays) {
-  Shears d;
-  derive_shears(rays, d);
-  Viewer viewer;
-  const bool same_axis = find_viewer(rays, d, d.traceable, viewer);
-  uint64_t met = 0;
-  for (int i = 0; i < candidates.count; ++i) {
-    const uint64_t lanes = d.traceable & candidates.lanes[i] & ~met;
-    if (lanes == 0) continue;
-    const uint32_t id = candidates.triangle[i];
-    met |= same_axis ? test_triangle<Query::any, true>(tree, rays, d, viewer, lanes, id, nullptr)
-                     : test_triangle<Query::any, false>(tree, rays, d, viewer, lanes, id, nullptr);
-  }
-  return met;
-}
-
 }  // namespace VITRAL_ISA
 }  // namespace vitral

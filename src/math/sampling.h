@@ -20,13 +20,18 @@ static inline void tangent_frame(const Vec3T<F>& n, Vec3T<F>& t, Vec3T<F>& b) {
 // The square [0,1)^2 to directions around n with density cos / pi: a disk of radius sqrt(u1) lifted to
 // the hemisphere (Malley's method). Strata of the square stay strata of the hemisphere.
 template <class F>
-static inline Vec3T<F> cosine_hemisphere(const Vec3T<F>& n, const F& u1, const F& u2) {
-  Vec3T<F> t, b;
-  tangent_frame(n, t, b);
+static inline Vec3T<F> cosine_hemisphere(const Vec3T<F>& t, const Vec3T<F>& b, const Vec3T<F>& n, const F& u1,
+                                         const F& u2) {
   F sine, cosine;
   sin_cos_turn(u2, sine, cosine);
   const F r = square_root(u1);
   return (t * (r * cosine) + b * (r * sine)) + n * square_root(F(1.0f) - u1);
+}
+template <class F>
+static inline Vec3T<F> cosine_hemisphere(const Vec3T<F>& n, const F& u1, const F& u2) {
+  Vec3T<F> t, b;
+  tangent_frame(n, t, b);
+  return cosine_hemisphere(t, b, n, u1, u2);
 }
 
 }  // namespace vitral

@@ -35,46 +35,68 @@ float own_share(const FrameContext& frame, const Material& m) {
   return frame.settings.effects.refraction && is_glass(m) ? m.opacity : 1.0f;
 }
 
+// Adds what one light sends to a packet; or, as the report has it, darkens the finished colour by one half
+// where the light is blocked.
+void add_light(const FrameContext& frame, const Light& light, const SurfacePacket& s,
+               const ColorPacket& visibility, ColorPacket& out, ColorPacket& darkening) {
+  const bool report = frame.settings.compositing == Compositing::report;
+  for (uint64_t left = s.points.live; left != 0; left &= left - 1) {
+    const int lane = __builtin_ctzll(left);
+    const Vec3 v = visibility.color[lane];
+    const Vec3 light_here = unblocked(light, frame.scene.materials[s.material[lane]], s, lane);
+    if (report) {
+      darkening.color[lane] *= luminance(v) > 0 ? v : Vec3{0.5f, 0.5f, 0.5f};
+      out.color[lane] += light_here;
+    } else {
+      out.color[lane] += v * light_here;
+    }
+  }
+}
+
 }  // namespace
 
-void light_surfaces(const FrameContext& frame, const SurfacePacket& s, PassTally& tally, ColorPacket& out,
-                    LightDetail& detail) {
+void light_surfaces(const FrameContext& frame, const SurfacePacket* const* surfaces, int count,
+                    PassTally& tally, Lit* out) {
   const Scene& scene = frame.scene;
   const bool report = frame.settings.compositing == Compositing::report;
-  ambient_visibility(frame, s.points, tally, detail.ao);
-  for (int lane = 0; lane < kPacketSize; ++lane) {
-    detail.shadow[lane] = 1;
-    if (!(s.points.live >> lane & 1)) continue;
-    const float ao = report ? 1.0f : detail.ao[lane];
-    out.color[lane] = scene.ambient * Vec3{s.r[lane], s.g[lane], s.b[lane]} * ao;
-  }
-
-  // The report darkens the finished colour instead: by one half where a light is blocked.
-  ColorPacket darkening;
-  for (Vec3& d : darkening.color) d = {1, 1, 1};
-  ColorPacket visibility;
-  for (size_t i = 0; i < scene.lights.size(); ++i) {
-    const Light& light = scene.lights[i];
-    light_visibility(frame, light, s.points, tally, visibility);
-    const PassTimer timer(tally, Pass::shade);
+  const PointPacket* points[kTileBlocks];
+  ColorPacket darkening[kTileBlocks];
+  for (int i = 0; i < count; ++i) {
+    const SurfacePacket& s = *surfaces[i];
+    points[i] = &s.points;
+    ambient_visibility(frame, s.points, tally, out[i].detail.ao);
     for (int lane = 0; lane < kPacketSize; ++lane) {
+      out[i].detail.shadow[lane] = 1;
+      darkening[i].color[lane] = {1, 1, 1};
       if (!(s.points.live >> lane & 1)) continue;
-      const Vec3 v = visibility.color[lane];
-      if (i == 0) detail.shadow[lane] = luminance(v);
-      const Vec3 light_here = unblocked(light, scene.materials[s.material[lane]], s, lane);
-      if (report) {
-        darkening.color[lane] *= luminance(v) > 0 ? v : Vec3{0.5f, 0.5f, 0.5f};
-        out.color[lane] += light_here;
-      } else {
-        out.color[lane] += v * light_here;
-      }
+      const float ao = report ? 1.0f : out[i].detail.ao[lane];
+      out[i].light.color[lane] = scene.ambient * Vec3{s.r[lane], s.g[lane], s.b[lane]} * ao;
     }
   }
 
-  for (int lane = 0; lane < kPacketSize; ++lane) {
-    if (!(s.points.live >> lane & 1)) continue;
-    if (report) out.color[lane] *= darkening.color[lane] * detail.ao[lane];
-    out.color[lane] = out.color[lane] * own_share(frame, scene.materials[s.material[lane]]);
+  for (const Light& light : scene.lights) {
+    ShadowAnswer shadows[kTileBlocks];
+    find_shadows(frame, light, points, count, tally, shadows);
+    for (int i = 0; i < count; ++i) {
+      ColorPacket visibility;
+      light_visibility(frame, light, *points[i], shadows[i], tally, visibility);
+      const PassTimer timer(tally, Pass::shade);
+      if (&light == &scene.lights.front()) {
+        for (int lane = 0; lane < kPacketSize; ++lane)
+          out[i].detail.shadow[lane] = luminance(visibility.color[lane]);
+      }
+      add_light(frame, light, *surfaces[i], visibility, out[i].light, darkening[i]);
+    }
+  }
+
+  for (int i = 0; i < count; ++i) {
+    const SurfacePacket& s = *surfaces[i];
+    ColorPacket& light = out[i].light;
+    for (uint64_t left = s.points.live; left != 0; left &= left - 1) {
+      const int lane = __builtin_ctzll(left);
+      if (report) light.color[lane] *= darkening[i].color[lane] * out[i].detail.ao[lane];
+      light.color[lane] = light.color[lane] * own_share(frame, scene.materials[s.material[lane]]);
+    }
   }
 }
 

@@ -95,10 +95,13 @@ void primary_hits(const FrameContext& frame, const TileVisibility& visibility, i
 // resolve.cpp: encodes linear colours; counts and paints red those that are not finite.
 Rgb8 encode_pixel(Vec3& color, uint64_t& not_finite);
 
-// shadow.cpp: how much of the light arrives at each point, per colour channel: 1 lit (or facing
-// away), 0 blocked, between for glass. Returns the points from which something opaque blocks it.
-uint64_t light_visibility(const FrameContext& frame, const Light& light, const PointPacket& points,
-                          PassTally& tally, ColorPacket& visibility);
+// shadow.cpp: which of the points face the light and are kept from it by something opaque, for up to
+// kTileBlocks packets that lie near each other; and then how much of it arrives at each point, per colour
+// channel: 1 lit (or facing away), 0 blocked, between for glass.
+void find_shadows(const FrameContext& frame, const Light& light, const PointPacket* const* points, int count,
+                  PassTally& tally, ShadowAnswer* out);
+void light_visibility(const FrameContext& frame, const Light& light, const PointPacket& points,
+                      const ShadowAnswer& answer, PassTally& tally, ColorPacket& visibility);
 
 // ambient.cpp: how many of the N ambient rays of each live point are free, and (free/N)^exponent.
 void count_free_rays(const FrameContext& frame, const PointPacket& points, PassTally& tally,
@@ -106,10 +109,14 @@ void count_free_rays(const FrameContext& frame, const PointPacket& points, PassT
 void ambient_visibility(const FrameContext& frame, const PointPacket& points, PassTally& tally,
                         float* visibility);
 
-// direct.cpp: the light that the live points send to their viewers by themselves; reflection and
-// refraction come on top.
-void light_surfaces(const FrameContext& frame, const SurfacePacket& surfaces, PassTally& tally,
-                    ColorPacket& out, LightDetail& detail);
+// direct.cpp: the light that the live points of up to kTileBlocks packets send to their viewers by
+// themselves; reflection and refraction come on top.
+struct Lit {
+  ColorPacket light;
+  LightDetail detail;
+};
+void light_surfaces(const FrameContext& frame, const SurfacePacket* const* surfaces, int count,
+                    PassTally& tally, Lit* out);
 
 // A secondary ray on its way, and what its light will be multiplied with.
 enum class PathKind : uint8_t { reflection, refraction };

@@ -130,14 +130,14 @@ uint64_t trace_packet(const FrameContext& frame, const Path* paths, int count, s
     const PassTimer timer(tally, Pass::shade);
     make_surfaces(frame, rays, hits, surfaces);
   }
-  ColorPacket light;
-  LightDetail detail;
-  light_surfaces(frame, surfaces, tally, light, detail);
+  Lit lit;
+  const SurfacePacket* const one = &surfaces;
+  light_surfaces(frame, &one, 1, tally, &lit);
 
   const PassTimer timer(tally, pass);
   for (int lane = 0; lane < count; ++lane) {
     const Path& p = paths[lane];
-    const Vec3 seen = surfaces.points.live >> lane & 1 ? light.color[lane] : frame.scene.background;
+    const Vec3 seen = surfaces.points.live >> lane & 1 ? lit.light.color[lane] : frame.scene.background;
     const Vec3 add = p.weight * seen;
     sums.pixels[p.pixel] += add;
     Vec3* part = p.root == PathKind::reflection ? sums.reflection : sums.refraction;

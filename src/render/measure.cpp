@@ -167,18 +167,34 @@ PassTimes measure_primary(Picture& p, FrameContext& frame, RasterView& view, Ray
   return pass;
 }
 
+// All that is traced to find out what one light sends to some packets; returns how many points are blocked.
+uint64_t trace_light(const FrameContext& frame, const Light& light, const PointPacket* const* points,
+                     int count, PassTally& tally) {
+  ShadowAnswer answers[kTileBlocks];
+  find_shadows(frame, light, points, count, tally, answers);
+  uint64_t blocked = 0;
+  for (int i = 0; i < count; ++i) {
+    blocked += count_of(answers[i].blocked);
+    if (!frame.accelerator.has_glass) continue;
+    ColorPacket visibility;
+    light_visibility(frame, light, *points[i], answers[i], tally, visibility);
+  }
+  return blocked;
+}
+
 PassTimes measure_shadows(Picture& p, uint64_t& shadowed) {
   const FrameContext& frame = p.frame;
   Counts counts;
   const PassTimes pass = time_pass(p, "shadows", counts, [&] {
     for_each_tile(p, [&](Block* blocks, Scratch& s) {
+      const PointPacket* points[kTileBlocks];
+      int count = 0;
       for (Block* b = blocks; b != blocks + kTileBlocks; ++b) {
-        if (b->surfaces.points.live == 0) continue;
-        for (const Light& light : frame.scene.lights) {
-          ColorPacket visibility;
-          const uint64_t blocked = light_visibility(frame, light, b->surfaces.points, s.tally, visibility);
-          if (&light == &frame.scene.lights.front()) s.counts.blocked += count_of(blocked);
-        }
+        if (b->surfaces.points.live != 0) points[count++] = &b->surfaces.points;
+      }
+      for (const Light& light : frame.scene.lights) {
+        const uint64_t blocked = trace_light(frame, light, points, count, s.tally);
+        if (&light == &frame.scene.lights.front()) s.counts.blocked += blocked;
       }
     });
   });
@@ -222,10 +238,8 @@ PassTimes measure_mirror(Picture& p, uint64_t& reflection_hits) {
         s.counts.rays += count_of(rays.live);
         s.counts.hits += count_of(seen.live);
         if (seen.live == 0) continue;
-        for (const Light& light : frame.scene.lights) {
-          ColorPacket visibility;
-          light_visibility(frame, light, seen, s.tally, visibility);
-        }
+        const PointPacket* const points = &seen;
+        for (const Light& light : frame.scene.lights) trace_light(frame, light, &points, 1, s.tally);
       }
     });
   });

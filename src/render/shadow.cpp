@@ -20,24 +20,29 @@ Vec3 glass_tint(const FrameContext& frame, Ray ray) {
 
 }  // namespace
 
-uint64_t light_visibility(const FrameContext& frame, const Light& light, const PointPacket& points,
-                          PassTally& tally, ColorPacket& visibility) {
+void find_shadows(const FrameContext& frame, const Light& light, const PointPacket* const* points, int count,
+                  PassTally& tally, ShadowAnswer* out) {
+  for (int i = 0; i < count; ++i) out[i] = {0, 0};
+  if (!frame.settings.effects.shadows) return;
+  const PassTimer timer(tally, Pass::shadows);
+  frame.kernels.trace_shadows(frame.accelerator.view, light, GlassRule::passes, points, count, out);
+  for (int i = 0; i < count; ++i) count_rays(tally, Pass::shadows, out[i].facing);
+}
+
+void light_visibility(const FrameContext& frame, const Light& light, const PointPacket& points,
+                      const ShadowAnswer& answer, PassTally& tally, ColorPacket& visibility) {
   for (Vec3& v : visibility.color) v = {1, 1, 1};
-  if (!frame.settings.effects.shadows) return 0;
+  for (uint64_t left = answer.blocked; left != 0; left &= left - 1)
+    visibility.color[__builtin_ctzll(left)] = {0, 0, 0};
+  const uint64_t lit = answer.facing & ~answer.blocked;
+  if (!frame.accelerator.has_glass || lit == 0) return;
   const PassTimer timer(tally, Pass::shadows);
   RayPacket rays;
   frame.kernels.shadow_rays(light, points, rays);
-  if (rays.live == 0) return 0;
-  count_rays(tally, Pass::shadows, rays.live);
-  const uint64_t blocked = frame.kernels.trace_any(frame.accelerator.view, rays, GlassRule::passes);
-  for (uint64_t left = blocked; left != 0; left &= left - 1)
-    visibility.color[__builtin_ctzll(left)] = {0, 0, 0};
-  if (!frame.accelerator.has_glass) return blocked;
-  for (uint64_t left = rays.live & ~blocked; left != 0; left &= left - 1) {
+  for (uint64_t left = lit; left != 0; left &= left - 1) {
     const int lane = __builtin_ctzll(left);
     visibility.color[lane] = glass_tint(frame, ray_of(rays, lane));
   }
-  return blocked;
 }
 
 }  // namespace vitral

@@ -55,6 +55,19 @@ void resolve_tile(const Rectangle& crop, int tile_x, int tile_y, Worker& worker,
   }
 }
 
+// What the pixels of one block see, with the keys of their random numbers.
+void see_block(const FrameContext& frame, Worker& worker, int block, int x, int y, uint64_t lanes,
+               SurfacePacket& surfaces) {
+  RayPacket rays;
+  HitPacket hits;
+  primary_hits(frame, worker.visibility, block, x, y, lanes, worker.tally, rays, hits);
+  const PassTimer timer(worker.tally, Pass::shade);
+  make_surfaces(frame, rays, hits, surfaces);
+  for (int lane = 0; lane < kPacketSize; ++lane) {
+    surfaces.points.key[lane] = pixel_key(x + lane % kBlockSide, y + lane / kBlockSide, frame.settings.seed);
+  }
+}
+
 }  // namespace
 
 void render_tile(const FrameContext& frame, const Rectangle& crop, int tile_x, int tile_y, Worker& worker,
@@ -67,37 +80,38 @@ void render_tile(const FrameContext& frame, const Rectangle& crop, int tile_x, i
     sums = {worker.color.data(), worker.reflection.data(), worker.refraction.data()};
   }
   worker.paths.current.clear();
+  // What the tile's blocks see, those that see anything.
   rasterize_tile(frame, tile_x, tile_y, worker.tally, worker.visibility);
+  worker.surfaces.resize(kTileBlocks);
+  const SurfacePacket* seen[kTileBlocks];
+  int corner_x[kTileBlocks], corner_y[kTileBlocks];
+  int count = 0;
   for (int block = 0; block < kTileBlocks; ++block) {
     const int x = tile_x + block % kTileBlocksAcross * kBlockSide,
               y = tile_y + block / kTileBlocksAcross * kBlockSide;
     const uint64_t lanes = lanes_inside(crop, x, y);
     if (lanes == 0 || is_background(frame, worker.visibility, block)) continue;
-    RayPacket rays;
-    HitPacket hits;
-    SurfacePacket surfaces;
-    primary_hits(frame, worker.visibility, block, x, y, lanes, worker.tally, rays, hits);
-    {
-      const PassTimer timer(worker.tally, Pass::shade);
-      make_surfaces(frame, rays, hits, surfaces);
-    }
+    SurfacePacket& surfaces = worker.surfaces[static_cast<size_t>(count)];
+    see_block(frame, worker, block, x, y, lanes, surfaces);
     if (surfaces.points.live == 0) continue;
-    for (int lane = 0; lane < kPacketSize; ++lane) {
-      surfaces.points.key[lane] =
-          pixel_key(x + lane % kBlockSide, y + lane / kBlockSide, frame.settings.seed);
-    }
+    seen[count] = &surfaces;
+    corner_x[count] = x, corner_y[count] = y;
+    ++count;
+  }
+
+  Lit lit[kTileBlocks];
+  light_surfaces(frame, seen, count, worker.tally, lit);
+  for (int i = 0; i < count; ++i) {
+    const SurfacePacket& surfaces = *seen[i];
     Path camera_paths[kPacketSize];
-    begin_paths(surfaces.points, x - tile_x, y - tile_y, camera_paths);
-    ColorPacket light;
-    LightDetail detail;
-    light_surfaces(frame, surfaces, worker.tally, light, detail);
-    for (int lane = 0; lane < kPacketSize; ++lane) {
-      if (!(surfaces.points.live >> lane & 1)) continue;
+    begin_paths(surfaces.points, corner_x[i] - tile_x, corner_y[i] - tile_y, camera_paths);
+    for (uint64_t left = surfaces.points.live; left != 0; left &= left - 1) {
+      const int lane = __builtin_ctzll(left);
       ++worker.covered;
-      worker.color[camera_paths[lane].pixel] = light.color[lane];
+      worker.color[camera_paths[lane].pixel] = lit[i].light.color[lane];
       if (targets.any)
-        write_aovs(targets, surfaces, detail, lane,
-                   frame_pixel(crop, x + lane % kBlockSide, y + lane / kBlockSide));
+        write_aovs(targets, surfaces, lit[i].detail, lane,
+                   frame_pixel(crop, corner_x[i] + lane % kBlockSide, corner_y[i] + lane / kBlockSide));
     }
     spawn_paths(frame, surfaces, camera_paths, worker.paths.current);
   }

@@ -12,6 +12,7 @@ struct Worker {
   PassTally tally;
   TileVisibility visibility;
   PathScratch paths;
+  std::vector<SurfacePacket> surfaces;              // of the tile's blocks
   std::vector<Vec3> color, reflection, refraction;  // of the tile
   uint64_t covered = 0, not_finite = 0;
 };

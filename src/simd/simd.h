@@ -57,6 +57,21 @@ static inline void store(uint32_t* p, Uint v) {
 static inline uint32_t bits(Mask m) {
   return m ? 1u : 0u;
 }
+static inline void compress(float* p, Float v, Mask m) {
+  if (m) *p = v;
+}
+static inline void compress(uint32_t* p, Uint v, Mask m) {
+  if (m) *p = v;
+}
+static inline float least_lane(Float v) {
+  return v;
+}
+static inline float greatest_lane(Float v) {
+  return v;
+}
+static inline float sum_of_lanes(Float v) {
+  return v;
+}
 static inline Mask mask_of_bits(uint64_t b) {
   return (b & 1) != 0;
 }
@@ -396,6 +411,59 @@ static inline void store(int32_t* p, Int a) {
 }
 static inline void store(uint32_t* p, Uint a) {
   std::memcpy(p, &a.v, sizeof a.v);
+}
+
+// Stores the lanes of the mask side by side from p on; up to LANES numbers there may be overwritten.
+#if LANES == 16
+static inline void compress(float* p, Float v, Mask m) {
+  _mm512_storeu_ps(p, _mm512_maskz_compress_ps(m.v, __m512(v.v)));
+}
+static inline void compress(uint32_t* p, Uint v, Mask m) {
+  _mm512_storeu_si512(p, _mm512_maskz_compress_epi32(m.v, __m512i(v.v)));
+}
+#else
+template <class T, class V>
+static inline void compress_lanes(T* p, V v, Mask m) {
+  T lane[LANES];
+  store(lane, v);
+  for (uint32_t left = bits(m); left != 0; left &= left - 1) *p++ = lane[__builtin_ctz(left)];
+}
+static inline void compress(float* p, Float v, Mask m) {
+  compress_lanes(p, v, m);
+}
+static inline void compress(uint32_t* p, Uint v, Mask m) {
+  compress_lanes(p, v, m);
+}
+#endif
+
+// The smallest and the largest lane.
+static inline float least_lane(Float v) {
+#if LANES == 16
+  const __m512 h = _mm512_maskz_min_ps(0xffff, __m512(v.v),
+                                       _mm512_maskz_shuffle_f32x4(0xffff, __m512(v.v), __m512(v.v), 0x4e));
+  const __m512 q = _mm512_maskz_min_ps(0xffff, h, _mm512_maskz_shuffle_f32x4(0xffff, h, h, 0xb1));
+  const __m128 lane4 = _mm512_castps512_ps128(q);
+  const __m128 lane2 = _mm_min_ps(lane4, _mm_movehl_ps(lane4, lane4));
+  return _mm_cvtss_f32(_mm_min_ss(lane2, _mm_shuffle_ps(lane2, lane2, 1)));
+#else
+  float lane[LANES];
+  store(lane, v);
+  for (int half = LANES / 2; half > 0; half /= 2) {
+    for (int i = 0; i < half; ++i) lane[i] = lane[i + half] < lane[i] ? lane[i + half] : lane[i];
+  }
+  return lane[0];
+#endif
+}
+static inline float greatest_lane(Float v) {
+  return -least_lane(-v);
+}
+// Their sum, in an order that depends on their number.
+static inline float sum_of_lanes(Float v) {
+  float lane[LANES];
+  std::memcpy(lane, &v.v, sizeof lane);
+  float sum = 0;
+  for (int i = 0; i < LANES; ++i) sum += lane[i];
+  return sum;
 }
 
 // 0, 1, 2, ... LANES-1

@@ -1,0 +1,25 @@
+// Vectors out of the packets' arrays and back, and the origins of secondary rays.
+#pragma once
+#include "kernels/points.h"
+#include "simd/simd.h"
+
+namespace vitral {
+namespace VITRAL_ISA {
+
+static inline Vec3T<Float> load3(const float* x, const float* y, const float* z, int g) {
+  return {load(x + g), load(y + g), load(z + g)};
+}
+static inline void store3(float* x, float* y, float* z, int g, const Vec3T<Float>& v) {
+  store(x + g, v.x), store(y + g, v.y), store(z + g, v.z);
+}
+
+static inline void set_origins(const PointPacket& points, RayPacket& rays) {
+  for (int g = 0; g < kPacketSize; g += kLanes) {
+    const Vec3T<Float> p = load3(points.px, points.py, points.pz, g);
+    const Vec3T<Float> n = load3(points.gx, points.gy, points.gz, g);
+    store3(rays.ox, rays.oy, rays.oz, g, p + n * load(points.offset + g));
+  }
+}
+
+}  // namespace VITRAL_ISA
+}  // namespace vitral
