@@ -417,7 +417,7 @@ TEST_F(Bench, StopsWhenInterrupted) {
   const Words work = joined(
       kAtThePlate, {"--size", "512x512", "--ao-samples", "1024", "--ao-distance", "50", "--isa", "scalar"});
   for (const auto& [shown, option] :
-       {std::pair{"\rao ", "--effects=ao"}, std::pair{"\rcamera, all [", "--report"}}) {
+       {std::pair{"\rao ", "--effects=ao"}, std::pair{"\rauto, all  ", "--report"}}) {
     Watched terminal;
     const Words words = joined({"bench", "plate.obj", option}, work);
     test::Process process(program, words, folder.path(), -1, terminal.theirs);
