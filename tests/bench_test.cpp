@@ -117,7 +117,7 @@ struct Bench : testing::Test {
 
 TEST_F(Bench, PrintsTheDocumentedJson) {
   const Json report = json("floor.obj", kFromAbove, {"--isa", "scalar", "--repeat", "3"});
-  EXPECT_EQ(report.keys(),
+  EXPECT_EQ(report.keys,
             (Words{"input", "triangles", "width", "height", "threads", "isa", "passes", "checks"}));
   EXPECT_EQ(report["input"].text, "floor.obj");
   EXPECT_EQ(report["triangles"].number, 2);
@@ -125,13 +125,13 @@ TEST_F(Bench, PrintsTheDocumentedJson) {
   EXPECT_EQ(report["height"].number, 24);
   EXPECT_EQ(report["threads"].number, 2);
   EXPECT_EQ(report["isa"].text, "scalar");
-  EXPECT_EQ(report["checks"].keys(),
+  EXPECT_EQ(report["checks"].keys,
             (Words{"covered_pixels", "shadowed_pixels", "reflection_hits", "ao_mean"}));
   ASSERT_FALSE(report["passes"].items.empty());
   for (const Json& pass : report["passes"].items) {
     Words keys{"name", "ms_median", "ms_min", "rays", "mrays_per_s"};
     if (pass["name"].text == "build") keys.push_back("bytes");
-    EXPECT_EQ(pass.keys(), keys);
+    EXPECT_EQ(pass.keys, keys);
     EXPECT_LE(pass["ms_min"].number, pass["ms_median"].number);
     EXPECT_GE(pass["ms_min"].number, 0);
     const double expected = pass["rays"].number / pass["ms_median"].number * 1e-3;

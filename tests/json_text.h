@@ -5,7 +5,6 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 namespace vitral::test {
@@ -13,26 +12,16 @@ namespace vitral::test {
 struct Json {
   enum class Kind { object, array, string, number, boolean, null };
   Kind kind = Kind::null;
-  std::vector<std::pair<std::string, Json>> members;  // in the order of the text
-  std::vector<Json> items;
+  std::vector<std::string> keys;  // of an object, in the order of the text
+  std::vector<Json> items;        // of an array, or what belongs to the keys
   std::string text;
   double number = 0;
 
   // Throws when there is no such member, or more than one.
   const Json& operator[](std::string_view key) const {
-    const Json* found = nullptr;
-    for (const auto& [name, value] : members) {
-      if (name != key) continue;
-      if (found) throw std::runtime_error("twice: " + name);
-      found = &value;
-    }
-    if (!found) throw std::runtime_error("no member " + std::string(key));
-    return *found;
-  }
-  std::vector<std::string> keys() const {
-    std::vector<std::string> names;
-    for (const auto& [name, value] : members) names.push_back(name);
-    return names;
+    if (std::count(keys.begin(), keys.end(), key) != 1)
+      throw std::runtime_error("not one member " + std::string(key));
+    return items[static_cast<size_t>(std::find(keys.begin(), keys.end(), key) - keys.begin())];
   }
 };
 
@@ -97,9 +86,9 @@ class JsonReader {
       out.kind = Json::Kind::object;
       if (take("}")) return out;
       do {
-        std::string key = string();
+        out.keys.push_back(string());
         expect(":");
-        out.members.emplace_back(std::move(key), value());
+        out.items.push_back(value());
       } while (take(","));
       expect("}");
     } else if (take("[")) {
