@@ -358,6 +358,18 @@ TEST_F(Bench, RefusesWrongUsage) {
   EXPECT_EQ(run({"bench", "nosuch.obj"}).code, 1);
 }
 
+TEST_F(Bench, RefusesAPictureThatDoesNotFitIntoMemory) {
+  // In two gigabytes the picture would fit, but not all that its pixels see.
+  const auto limited = [&](const std::string& words) {
+    const Words shell{"-c", "ulimit -v 2097152 && exec \"$0\" " + words, program};
+    return test::Process("/bin/sh", shell, folder.path()).wait();
+  };
+  if (limited("--version").code != 0) GTEST_SKIP() << "a sanitizer takes more for itself";
+  const Finished done = limited("bench floor.obj --size 10000x10000");
+  EXPECT_EQ(done.code, 2) << done.err;
+  EXPECT_NE(done.err.find("10000x10000 pixels needs "), std::string::npos) << done.err;
+}
+
 // Bench with a pseudo-terminal for its standard error.
 struct Watched {
   int ours = -1, theirs = -1;

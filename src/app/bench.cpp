@@ -22,6 +22,16 @@ void check_options(const Options& o) {
   }
 }
 
+// The passes keep what the camera sees, which is many times the picture.
+void check_memory(const Job& job) {
+  const Settings& settings = job.pipeline.settings;
+  const size_t needed = frame_bytes(settings) + measurement_bytes(settings), limit = memory_limit();
+  if (needed <= limit) return;
+  throw UsageError("timing the passes of " + std::to_string(settings.width) + "x" +
+                   std::to_string(settings.height) + " pixels needs " + std::to_string(needed >> 20) +
+                   " MiB, there are " + std::to_string(limit >> 20));
+}
+
 // All of the project's, the job's first; its alone when the user asked for one.
 std::vector<Camera> report_cameras(const Job& job, const Options& o) {
   std::vector<Camera> cameras{job.camera};
@@ -65,6 +75,7 @@ std::string measure(const Job& job, const Options& options) {
 int run_bench(const Options& options) {
   check_options(options);
   Job job = plan_job(options);
+  if (!options.report) check_memory(job);
   report_warnings(job.warnings, options);
   load_job(job, options);
   report_warnings(job.warnings, options);

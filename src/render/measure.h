@@ -63,6 +63,9 @@ struct Measurement {
 Measurement measure_passes(const Scene& scene, const Camera& camera, const Settings& settings, RayRules rules,
                            const Runs& runs, Control& control);
 
+// Bytes that measure_passes keeps from pass to pass, besides scene, trees and frame.
+size_t measurement_bytes(const Settings& settings);
+
 // A frame to be timed, and its name for runs.on_progress.
 struct FrameJob {
   std::string name;

@@ -17,26 +17,41 @@ uint64_t pixels_in(const Rectangle& crop, int x, int y) {
   return lanes;
 }
 
+Rectangle pixels_of(const Settings& s) {
+  return s.crop.width == 0 ? Rectangle{0, 0, s.width, s.height} : s.crop;
+}
+
+// The tiles that a crop touches; anchored at the frame's corner, as in a rendered frame.
+struct Tiles {
+  int x, y, across, down;
+};
+Tiles tiles_of(const Rectangle& crop) {
+  const int x = crop.x / kTileSide, y = crop.y / kTileSide;
+  return {x, y, (crop.x + crop.width - 1) / kTileSide - x + 1,
+          (crop.y + crop.height - 1) / kTileSide - y + 1};
+}
+
 double milliseconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
 
 }  // namespace
 
+size_t measurement_bytes(const Settings& settings) {
+  const Tiles tiles = tiles_of(pixels_of(settings));
+  return static_cast<size_t>(tiles.across) * static_cast<size_t>(tiles.down) * kTileBlocks * sizeof(Block);
+}
+
 Picture lay_out(const FrameContext& frame, ThreadPool& pool, const Control& control, const Runs& runs) {
-  const Settings& s = frame.settings;
-  Picture p{frame, s.crop, pool, control, runs, {}, std::vector<Scratch>(pool.workers())};
-  if (p.crop.width == 0) p.crop = {0, 0, s.width, s.height};
-  // Tiles are anchored at the frame's corner, as in a rendered frame.
-  const int first_x = p.crop.x / kTileSide, first_y = p.crop.y / kTileSide;
-  const int tiles_x = (p.crop.x + p.crop.width - 1) / kTileSide - first_x + 1;
-  const int tiles_y = (p.crop.y + p.crop.height - 1) / kTileSide - first_y + 1;
-  p.blocks.resize(static_cast<size_t>(tiles_x) * static_cast<size_t>(tiles_y) * kTileBlocks);
+  const Rectangle crop = pixels_of(frame.settings);
+  const Tiles tiles = tiles_of(crop);
+  Picture p{frame, crop, pool, control, runs, {}, std::vector<Scratch>(pool.workers())};
+  p.blocks.resize(static_cast<size_t>(tiles.across) * static_cast<size_t>(tiles.down) * kTileBlocks);
   for (size_t i = 0; i < p.blocks.size(); ++i) {
     const int tile = static_cast<int>(i / kTileBlocks), inside = static_cast<int>(i % kTileBlocks);
     Block& b = p.blocks[i];
-    b.x = (first_x + tile % tiles_x) * kTileSide + inside % kTileBlocksAcross * kBlockSide;
-    b.y = (first_y + tile / tiles_x) * kTileSide + inside / kTileBlocksAcross * kBlockSide;
+    b.x = (tiles.x + tile % tiles.across) * kTileSide + inside % kTileBlocksAcross * kBlockSide;
+    b.y = (tiles.y + tile / tiles.across) * kTileSide + inside / kTileBlocksAcross * kBlockSide;
     b.lanes = pixels_in(p.crop, b.x, b.y);
   }
   return p;
