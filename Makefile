@@ -69,7 +69,7 @@ help:
 	@echo '  golden     rewrite the golden images, then fail so that it cannot be left on'
 	@echo '  figures    render every project of scenes/ to out/figures'
 	@echo '  check-isa  prove that no kernel shares code with another instruction set'
-	@echo '  bench      time every pass on the plaza'
+	@echo '  bench      time every pass on the plaza, and print the tables of effects and samples'
 	@echo '  install    copy vitral to $$(DESTDIR)$$(PREFIX)/bin; uninstall removes it'
 	@echo '  clean      remove everything under out/'
 
@@ -141,7 +141,9 @@ figures: $(OUT)/vitral out/plaza/plaza.obj
 	for scene in scenes/*.xml; do $(OUT)/vitral $$scene -o out/figures/$$(basename $$scene .xml).png || exit 1; done
 
 bench: $(OUT)/vitral out/plaza/plaza.obj
-	$(OUT)/vitral bench scenes/SceneFinal.xml
+	$(OUT)/vitral bench scenes/SceneFinal.xml --repeat 3
+	@echo
+	$(OUT)/vitral bench scenes/SceneFinal.xml --repeat 3 --report
 
 # --- tests -------------------------------------------------------------------------------------
 

@@ -1,102 +1,87 @@
-// Times every pass of a frame, and the frame.
+// Times every pass of a frame, and the frame; or, for --report, frames of many settings.
+#include "app/bench.h"
+
 #include "app/commands.h"
 #include "app/interrupt.h"
-#include "app/json.h"
-#include "render/measure.h"
+#include "app/progress.h"
 
-#include <algorithm>
-#include <cstdio>
-#include <string>
-#include <vector>
+#include <unistd.h>
 
 namespace vitral {
 namespace {
 
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const size_t half = values.size() / 2;
-  return values.size() % 2 == 1 ? values[half] : (values[half - 1] + values[half]) / 2;
-}
+// A report's row is run until it has taken so long, or as often as --repeat says.
+constexpr double kEnoughSeconds = 4;
 
-double least(const std::vector<double>& values) {
-  return *std::min_element(values.begin(), values.end());
-}
-
-double mrays_per_s(const PassTimes& pass) {
-  const double ms = median(pass.ms);
-  return ms > 0 ? static_cast<double>(pass.rays) / ms * 1e-3 : 0;
-}
-
-std::string as_json(const Job& job, const Measurement& m) {
-  JsonWriter json;
-  json.begin_object()
-      .add("input", job.input)
-      .add("triangles", uint64_t{job.project.scene.mesh.triangles.size()})
-      .add("width", job.pipeline.settings.width)
-      .add("height", job.pipeline.settings.height)
-      .add("threads", m.threads)
-      .add("isa", m.isa)
-      .begin_array("passes");
-  for (const PassTimes& pass : m.passes) {
-    json.begin_object()
-        .add("name", pass.name)
-        .add("ms_median", median(pass.ms))
-        .add("ms_min", least(pass.ms))
-        .add("rays", pass.rays)
-        .add("mrays_per_s", mrays_per_s(pass));
-    if (pass.bytes > 0) json.add("bytes", pass.bytes);
-    json.end_object();
+void check_options(const Options& o) {
+  if (!o.report) return;
+  for (const auto& [given, name] : {std::pair{o.json, "--json"}, std::pair{o.anchor, "--anchor"},
+                                    std::pair{o.effects.has_value(), "--effects"}}) {
+    if (given)
+      throw UsageError(std::string("--report chooses effects and prints tables: it goes without ") + name);
   }
-  json.end_array()
-      .begin_object("checks")
-      .add("covered_pixels", m.covered_pixels)
-      .add("shadowed_pixels", m.shadowed_pixels)
-      .add("reflection_hits", m.reflection_hits)
-      .add("ao_mean", m.ao_mean)
-      .end_object();
-  return json.end_object().text();
 }
 
-std::string as_table(const Job& job, const Measurement& m, int frames) {
-  char line[200];
-  std::string text = job.input + ": " + std::to_string(job.project.scene.mesh.triangles.size()) +
-                     " triangles, " + std::to_string(job.pipeline.settings.width) + "x" +
-                     std::to_string(job.pipeline.settings.height) + ", " + std::to_string(m.threads) +
-                     " threads, " + m.isa + ", " + std::to_string(frames) + " frames\n";
-  std::snprintf(line, sizeof line, "%-12s %12s %12s %12s %12s\n", "pass", "median ms", "least ms", "rays",
-                "Mrays/s");
-  text += line;
-  for (const PassTimes& pass : m.passes) {
-    std::snprintf(line, sizeof line, "%-12s %12.2f %12.2f %12llu %12.1f\n", pass.name.c_str(),
-                  median(pass.ms), least(pass.ms), static_cast<unsigned long long>(pass.rays),
-                  mrays_per_s(pass));
-    text += line;
+// The passes keep what the camera sees, which is many times the picture.
+void check_memory(const Job& job) {
+  const Settings& settings = job.pipeline.settings;
+  const size_t needed = frame_bytes(settings) + measurement_bytes(settings), limit = memory_limit();
+  if (needed <= limit) return;
+  throw UsageError("timing the passes of " + std::to_string(settings.width) + "x" +
+                   std::to_string(settings.height) + " pixels needs " + std::to_string(needed >> 20) +
+                   " MiB, there are " + std::to_string(limit >> 20));
+}
+
+// All of the project's, the job's first; its alone when the user asked for one.
+std::vector<Camera> report_cameras(const Job& job, const Options& o) {
+  std::vector<Camera> cameras{job.camera};
+  if (job.automatic || o.camera || o.eye || o.view || o.up || o.fov || o.near || o.far) return cameras;
+  for (const Camera& camera : job.project.scene.cameras) {
+    if (camera.name != job.camera.name) cameras.push_back(camera);
   }
-  std::snprintf(line, sizeof line,
-                "covered pixels %llu, shadowed %llu, reflected rays that met something %llu, mean ambient "
-                "visibility %.6f\n",
-                static_cast<unsigned long long>(m.covered_pixels),
-                static_cast<unsigned long long>(m.shadowed_pixels),
-                static_cast<unsigned long long>(m.reflection_hits), m.ao_mean);
-  return text + line;
+  return cameras;
+}
+
+std::string measure_report(const Job& job, const Options& options, Runs& runs, Control& control) {
+  runs.enough_seconds = kEnoughSeconds;
+  const std::vector<Camera> cameras = report_cameras(job, options);
+  const FramesMeasured measured =
+      measure_frames(job.project.scene, report_jobs(cameras, job.pipeline.settings), runs, control);
+  return report_tables(job, cameras, runs, measured);
+}
+
+std::string measure_each_pass(const Job& job, const Options& options, const Runs& runs, Control& control) {
+  const RayRules rules = options.anchor ? RayRules::anchor : RayRules::scene;
+  Measurement m = measure_passes(job.project.scene, job.camera, job.pipeline.settings, rules, runs, control);
+  m.passes.insert(m.passes.begin(), {"load", {job.load_seconds * 1e3}, 0, 0});
+  return options.json ? passes_json(job, m) : passes_table(job, m, options.repeat);
+}
+
+// With a bar on a terminal, which is redrawn between the runs: nobody draws while the clock runs.
+std::string measure(const Job& job, const Options& options) {
+  Control control;
+  const InterruptGuard guard(control.stop);
+  ProgressBar bar;
+  Runs runs;
+  runs.repeat = options.repeat;
+  if (is_terminal(STDERR_FILENO) && !options.quiet)
+    runs.on_progress = [&](const Progress& progress) { bar.update(progress); };
+  return options.report ? measure_report(job, options, runs, control)
+                        : measure_each_pass(job, options, runs, control);
 }
 
 }  // namespace
 
 int run_bench(const Options& options) {
+  check_options(options);
   Job job = plan_job(options);
+  if (!options.report) check_memory(job);
+  report_warnings(job.warnings, options);
   load_job(job, options);
   report_warnings(job.warnings, options);
-  Scene& scene = job.project.scene;
-  const RayRules rules = options.anchor ? RayRules::anchor : RayRules::scene;
-  if (options.anchor) simplify(scene, job.camera);
-  if (options.mirror_all) make_mirrors(scene);
-
-  Control control;
-  const InterruptGuard guard(control.stop);
-  Measurement m = measure_passes(scene, job.camera, job.pipeline.settings, rules, options.repeat, control);
-  m.passes.insert(m.passes.begin(), {"load", {job.load_seconds * 1e3}, 0, 0});
-  print(options.json ? as_json(job, m) : as_table(job, m, options.repeat));
+  if (options.anchor) simplify(job.project.scene, job.camera);
+  if (options.mirror_all) make_mirrors(job.project.scene);
+  print(measure(job, options));
   return kDone;
 }
 

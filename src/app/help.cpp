@@ -24,8 +24,8 @@ constexpr const char* kRenderPage =
 constexpr const char* kBenchPage =
     "vitral bench INPUT\n"
     "\n"
-    "Loads the input and renders it several times. The time of a pass is the sum of the workers'\n"
-    "clocks in it, divided by their number; load, build and frame are wall clock.\n";
+    "Loads the input, builds the trees and runs each pass over the whole picture by itself, several\n"
+    "times by the clock; then the frame as a whole, without the build. Rays are counted, not estimated.\n";
 
 constexpr const char* kInfoPage =
     "vitral info INPUT\n"

@@ -225,14 +225,19 @@ constexpr OptionRow kTable[] = {
      [](O& o, const R& r, const S& v) {
        o.primary = one_of(r, v, {Primary::raster, Primary::trace});
      }},
-    {kWork, "--repeat", "", "R", kBench, "frames that are timed, 1 to 1000 (5)",
+    {kWork, "--repeat", "", "R", kBench,
+     "how often each pass is timed, after a run to warm up, 1 to 1000 (5)",
      [](O& o, const R& r, const S& v) { o.repeat = integer(r, v, 1, 1000); }},
     {kWork, "--mirror-all", "", "", kBench, "every surface is a perfect mirror",
      [](O& o, const R&, const S&) { o.mirror_all = true; }},
     {kWork, "--anchor", "", "", kBench,
      "rays that another tracer can repeat: opaque surfaces, geometric\n"
-     "normals, a fixed offset, mirrors everywhere",
+     "normals, a fixed offset, one mirrored ray from every surface",
      [](O& o, const R&, const S&) { o.anchor = true; }},
+    {kWork, "--report", "", "", kBench,
+     "instead of the passes: what each effect costs at every camera, and\n"
+     "ambient occlusion with 1 to 100 samples",
+     [](O& o, const R&, const S&) { o.report = true; }},
 
     {kTalk, "--stats", "", "FILE", kRender, "write times, rays and counts as JSON; - is standard output",
      [](O& o, const R& r, const S& v) { o.stats = name(r, v); }},

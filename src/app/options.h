@@ -44,6 +44,7 @@ struct Options {
   int repeat = 5;
   bool anchor = false;      // bench: another tracer's rays
   bool mirror_all = false;  // bench: every surface a perfect mirror
+  bool report = false;      // bench: the tables of effects and of ambient samples
   bool json = false;
   bool quiet = false;
 };

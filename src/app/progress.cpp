@@ -67,12 +67,13 @@ std::string progress_line(const Progress& progress, uint64_t rays_of_pass, doubl
 
 void ProgressBar::update(const Progress& progress) {
   const Clock::time_point now = Clock::now();
-  if (pass_ != progress.pass) {
+  const bool same_pass = pass_ == progress.pass;
+  if (!same_pass) {
     pass_ = progress.pass;
     start_ = now;
     rays_before_ = progress.rays;
   }
-  if (on_screen_ && now - drawn_ < std::chrono::milliseconds(100)) return;
+  if (on_screen_ && same_pass && now - drawn_ < std::chrono::milliseconds(100)) return;
   drawn_ = now;
   on_screen_ = true;
   const double seconds = std::chrono::duration<double>(now - start_).count();

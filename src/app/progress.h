@@ -7,8 +7,8 @@
 
 namespace vitral {
 
-// Draws one line and keeps redrawing it, at most ten times a second; erases it when it goes. Used by
-// one thread at a time.
+// Draws one line and keeps redrawing it, for each pass at once and then at most ten times a second;
+// erases it when it goes. Used by one thread at a time.
 class ProgressBar {
  public:
   ProgressBar() = default;

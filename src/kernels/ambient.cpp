@@ -112,5 +112,10 @@ void ambient_occlusion(const KdView& tree, const PointPacket& points, const Ambi
   }
 }
 
+void ambient_blocks(const KdView& tree, const PointPacket* const* points, int count,
+                    const AmbientSettings& settings, FreeRays* out) {
+  for (int i = 0; i < count; ++i) ambient_occlusion(tree, *points[i], settings, out[i].count);
+}
+
 }  // namespace VITRAL_ISA
 }  // namespace vitral

@@ -44,6 +44,10 @@ struct Kernels {
   void (*ambient_occlusion)(const KdView& tree, const PointPacket& points, const AmbientSettings& settings,
                             uint32_t* free_rays);
 
+  // The same for up to 16 packets of points that lie near each other.
+  void (*ambient_blocks)(const KdView& tree, const PointPacket* const* points, int count,
+                         const AmbientSettings& settings, FreeRays* out);
+
   // The nearest triangle at every pixel of the tile in that column and row, which must touch the view's
   // window.
   void (*fill_tile)(const RasterView& view, int tile_x, int tile_y, TileVisibility& out);

@@ -153,7 +153,7 @@ static inline bool find_viewer(const RayPacket& rays, const Shears& d, uint64_t 
 
 // Those of `lanes` that meet the triangle.
 static inline uint64_t test_any(const KdView& tree, const RayPacket& rays, const Shears& d, uint64_t lanes,
-                         uint32_t id) {
+                                uint32_t id) {
   Viewer viewer;
   return find_viewer(rays, d, lanes, viewer)
              ? test_triangle<Query::any, true>(tree, rays, d, viewer, lanes, id, nullptr)

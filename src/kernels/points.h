@@ -36,6 +36,11 @@ struct ShadowAnswer {
   uint64_t facing, blocked;
 };
 
+// Of 64 points: how many of each one's ambient rays meet nothing opaque.
+struct alignas(64) FreeRays {
+  uint32_t count[kPacketSize];
+};
+
 struct AmbientSettings {
   int strata;                          // n of n x n samples
   float distance;                      // rays end here

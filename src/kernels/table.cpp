@@ -9,18 +9,9 @@ namespace vitral {
 namespace VITRAL_ISA {
 
 const Kernels kTable = {
-    VITRAL_NAME(VITRAL_ISA),
-    kLanes,
-    primary_rays,
-    trace_closest,
-    trace_any,
-    surface_points,
-    mirror_rays,
-    shadow_rays,
-    trace_shadows,
-    ambient_occlusion,
-    fill_tile,
-    intersect_visible,
+    VITRAL_NAME(VITRAL_ISA), kLanes,      primary_rays,      trace_closest, trace_any,
+    surface_points,          mirror_rays, shadow_rays,       trace_shadows, ambient_occlusion,
+    ambient_blocks,          fill_tile,   intersect_visible,
 };
 
 }  // namespace VITRAL_ISA

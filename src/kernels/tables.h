@@ -16,6 +16,8 @@ void trace_shadows(const KdView& tree, const Light& light, GlassRule glass, cons
                    int count, ShadowAnswer* out);
 void ambient_occlusion(const KdView& tree, const PointPacket& points, const AmbientSettings& settings,
                        uint32_t* free_rays);
+void ambient_blocks(const KdView& tree, const PointPacket* const* points, int count,
+                    const AmbientSettings& settings, FreeRays* out);
 void fill_tile(const RasterView& view, int tile_x, int tile_y, TileVisibility& out);
 void intersect_visible(const Pinhole& camera, const KdTriangle* triangles, int x, int y,
                        const uint32_t* numbers, HitPacket& hits);

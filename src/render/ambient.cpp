@@ -4,24 +4,22 @@
 
 namespace vitral {
 
-void count_free_rays(const FrameContext& frame, const PointPacket& points, PassTally& tally,
-                     uint32_t* free_rays) {
+void count_free_rays(const FrameContext& frame, const PointPacket* const* points, int count, PassTally& tally,
+                     FreeRays* out) {
   const PassTimer timer(tally, Pass::ao);
-  frame.kernels.ambient_occlusion(frame.accelerator.view, points,
-                                  {frame.ao_strata, frame.settings.ao_distance, frame.sample_step},
-                                  free_rays);
-  tally.rays[static_cast<size_t>(Pass::ao)] += static_cast<uint64_t>(__builtin_popcountll(points.live)) *
-                                               static_cast<uint64_t>(frame.ao_strata * frame.ao_strata);
+  const AmbientSettings settings{frame.ao_strata, frame.settings.ao_distance, frame.sample_step};
+  frame.kernels.ambient_blocks(frame.accelerator.view, points, count, settings, out);
+  for (int i = 0; i < count; ++i) {
+    tally.rays[static_cast<size_t>(Pass::ao)] +=
+        static_cast<uint64_t>(__builtin_popcountll(points[i]->live)) *
+        static_cast<uint64_t>(frame.ao_strata * frame.ao_strata);
+  }
 }
 
-void ambient_visibility(const FrameContext& frame, const PointPacket& points, PassTally& tally,
+void ambient_visibility(const FrameContext& frame, const PointPacket& points, const FreeRays& free_rays,
                         float* visibility) {
-  for (int lane = 0; lane < kPacketSize; ++lane) visibility[lane] = 1;
-  if (!frame.settings.effects.ambient_occlusion || points.live == 0) return;
-  alignas(64) uint32_t free_rays[kPacketSize];
-  count_free_rays(frame, points, tally, free_rays);
   for (int lane = 0; lane < kPacketSize; ++lane) {
-    if (points.live >> lane & 1) visibility[lane] = frame.ao_of_free_rays[free_rays[lane]];
+    visibility[lane] = points.live >> lane & 1 ? frame.ao_of_free_rays[free_rays.count[lane]] : 1.0f;
   }
 }
 

@@ -59,13 +59,17 @@ void light_surfaces(const FrameContext& frame, const SurfacePacket* const* surfa
                     PassTally& tally, Lit* out) {
   const Scene& scene = frame.scene;
   const bool report = frame.settings.compositing == Compositing::report;
-  const PointPacket* points[kTileBlocks];
+  const PointPacket* points[kTileBlocks] = {};
+  for (int i = 0; i < count; ++i) points[i] = &surfaces[i]->points;
+  FreeRays free_rays[kTileBlocks];
+  const bool occlusion = frame.settings.effects.ambient_occlusion;
+  if (occlusion) count_free_rays(frame, points, count, tally, free_rays);
   ColorPacket darkening[kTileBlocks];
   for (int i = 0; i < count; ++i) {
     const SurfacePacket& s = *surfaces[i];
-    points[i] = &s.points;
-    ambient_visibility(frame, s.points, tally, out[i].detail.ao);
+    if (occlusion) ambient_visibility(frame, s.points, free_rays[i], out[i].detail.ao);
     for (int lane = 0; lane < kPacketSize; ++lane) {
+      if (!occlusion) out[i].detail.ao[lane] = 1;
       out[i].detail.shadow[lane] = 1;
       darkening[i].color[lane] = {1, 1, 1};
       if (!(s.points.live >> lane & 1)) continue;

@@ -68,6 +68,9 @@ inline Vec3 get(const float* x, const float* y, const float* z, int lane) {
   return {x[lane], y[lane], z[lane]};
 }
 
+// The blocks of a tile so that every four and every sixteen of them make a square.
+inline constexpr int kBlocksInOrder[kTileBlocks] = {0, 1, 4, 5, 2, 3, 6, 7, 8, 9, 12, 13, 10, 11, 14, 15};
+
 // Colours of 64 points.
 struct ColorPacket {
   Vec3 color[kPacketSize];
@@ -103,10 +106,11 @@ void find_shadows(const FrameContext& frame, const Light& light, const PointPack
 void light_visibility(const FrameContext& frame, const Light& light, const PointPacket& points,
                       const ShadowAnswer& answer, PassTally& tally, ColorPacket& visibility);
 
-// ambient.cpp: how many of the N ambient rays of each live point are free, and (free/N)^exponent.
-void count_free_rays(const FrameContext& frame, const PointPacket& points, PassTally& tally,
-                     uint32_t* free_rays);
-void ambient_visibility(const FrameContext& frame, const PointPacket& points, PassTally& tally,
+// ambient.cpp: how many of the N ambient rays of each live point are free, for up to kTileBlocks packets
+// that lie near each other; and (free/N)^exponent, 1 at lanes that are not live.
+void count_free_rays(const FrameContext& frame, const PointPacket* const* points, int count, PassTally& tally,
+                     FreeRays* out);
+void ambient_visibility(const FrameContext& frame, const PointPacket& points, const FreeRays& free_rays,
                         float* visibility);
 
 // direct.cpp: the light that the live points of up to kTileBlocks packets send to their viewers by

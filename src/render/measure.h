@@ -1,7 +1,9 @@
-// The passes of a frame, each run over the whole picture and timed alone.
+// The passes of a frame, each run over the whole picture and timed alone; and whole frames.
 #pragma once
 #include "vitral/render.h"
 
+#include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -10,7 +12,8 @@ namespace vitral {
 // The rays of the frame as it is rendered; or those that another ray tracer can be asked for, too:
 // every surface opaque, geometric normals, all secondary rays starting 10^-4 of the scene's diagonal
 // off the surface, ambient sample s of pixel (x, y) jittered by hash32((y * width + x) * samples + s),
-// and one mirrored ray from every visible point with one shadow ray from where it arrives.
+// and one mirrored ray from every visible point with, if shadows are on, one shadow ray from where it
+// arrives.
 enum class RayRules { scene, anchor };
 
 // What the anchor's rules make of a scene and a camera: all materials opaque, corners without normals,
@@ -20,11 +23,19 @@ void simplify(Scene& scene, Camera& camera);
 // Makes every surface a perfect mirror.
 void make_mirrors(Scene& scene);
 
+// How often something is run by the clock. Before that it runs once to warm up. No further run is
+// begun after `enough_seconds`; a warm-up that took as long is counted as a run.
+struct Runs {
+  int repeat = 5;  // >= 1
+  double enough_seconds = std::numeric_limits<double>::infinity();
+  std::function<void(const Progress&)> on_progress;  // before every run, off the clock
+};
+
 struct PassTimes {
   std::string name;
   std::vector<double> ms;  // wall clock, one for every run
   uint64_t rays = 0;       // of one run
-  uint64_t bytes = 0;      // of the tree, for `build`
+  uint64_t bytes = 0;      // of the trees, for `build`
 };
 
 struct Measurement {
@@ -38,10 +49,44 @@ struct Measurement {
   double ao_mean = 0;            // free share of all ambient rays
 };
 
-// Runs every pass once to warm up and then `repeat` times. `reflection` and `refraction` are the paths
-// of that kind from every visible surface, lit with shadows but without ambient occlusion. Throws as
-// render() does.
+// Times every pass alone:
+//   build         the trees
+//   raster        what each pixel sees, as position and geometric normal; `primary` when it is traced
+//   shadows, ao   the rays of every visible surface
+//   reflection,   the paths of that kind from every visible surface, lit with shadows but without ambient
+//   refraction    occlusion; by the anchor's rules the mirrored rays, and no refraction
+//   resolve       the encoding of a picture that has no effects
+//   frame         everything after the build, tile by tile. By the scene's rules that is render_frame. By
+//                 the anchor's rules it is the passes named above with exactly their rays, so that it can
+//                 be held against their sum in another tracer, which does not shade and encode either.
+// control.on_progress is called from within frames: leave it empty. Throws as render() does.
 Measurement measure_passes(const Scene& scene, const Camera& camera, const Settings& settings, RayRules rules,
-                           int repeat, const Control& control);
+                           const Runs& runs, Control& control);
+
+// Bytes that measure_passes keeps from pass to pass, besides scene, trees and frame.
+size_t measurement_bytes(const Settings& settings);
+
+// A frame to be timed, and its name for runs.on_progress.
+struct FrameJob {
+  std::string name;
+  Camera camera;
+  Settings settings;
+};
+
+struct FrameTimes {
+  std::vector<double> ms;   // wall clock, one for every run
+  double tracer_share = 0;  // of all runs' time on all threads: what went into passes that trace rays, 0..1
+  uint64_t rays = 0;        // of one run
+};
+
+// Whole frames over trees that are built once; in the order of the jobs. The jobs' threads must agree.
+// control as above. Throws as render() does.
+struct FramesMeasured {
+  std::string isa;
+  int threads = 0;
+  std::vector<FrameTimes> frames;
+};
+FramesMeasured measure_frames(const Scene& scene, const std::vector<FrameJob>& jobs, const Runs& runs,
+                              Control& control);
 
 }  // namespace vitral

@@ -86,7 +86,7 @@ void render_tile(const FrameContext& frame, const Rectangle& crop, int tile_x, i
   const SurfacePacket* seen[kTileBlocks];
   int corner_x[kTileBlocks], corner_y[kTileBlocks];
   int count = 0;
-  for (int block = 0; block < kTileBlocks; ++block) {
+  for (const int block : kBlocksInOrder) {
     const int x = tile_x + block % kTileBlocksAcross * kBlockSide,
               y = tile_y + block / kTileBlocksAcross * kBlockSide;
     const uint64_t lanes = lanes_inside(crop, x, y);
