@@ -1,14 +1,12 @@
 #include "kdtree/sah.h"
 
 #include <algorithm>
-#include <array>
 #include <limits>
-#include <vector>
 
 namespace vitral {
 namespace {
 
-constexpr int kBins = 64;
+constexpr float kInfinite = std::numeric_limits<float>::infinity();
 
 // The cell's surface areas as functions of where the plane is, all halved.
 struct CellArea {
@@ -22,106 +20,173 @@ CellArea cell_area(const Box& cell, int axis) {
   return {u * v, u + v, component(cell.min, axis), component(cell.max, axis), whole > 0 ? 1 / whole : 0.0f};
 }
 
-// Takes the plane into account when it lies strictly inside the cell.
-void consider(const CellArea& area, int axis, float position, size_t below, size_t above, size_t planar,
-              const SahCosts& costs, Plane& best) {
-  if (!(position > area.lower && position < area.upper) || area.inverse == 0) return;
-  const float area_below = area.ends + area.around * (position - area.lower);
-  const float area_above = area.ends + area.around * (area.upper - position);
-  for (const PlanarSide side : {PlanarSide::below, PlanarSide::above}) {
-    const size_t b = below + (side == PlanarSide::below ? planar : 0);
-    const size_t a = above + (side == PlanarSide::above ? planar : 0);
-    const float work =
-        (area_below * static_cast<float>(b) + area_above * static_cast<float>(a)) * area.inverse;
-    const float bonus = a == 0 || b == 0 ? costs.empty_bonus : 1.0f;
-    const float cost = bonus * (costs.traversal + costs.intersection * work);
-    if (cost < best.cost) best = {cost, position, axis, side};
-    if (planar == 0) break;
+// The cost of four planes, with that many references on their sides; +inf for those that do not lie
+// strictly inside the cell.
+Float4 cost_of(const CellArea& area, const Float4& position, const Int4& below, const Int4& above,
+               const SahCosts& costs) {
+  const Float4 area_below = area.ends + area.around * (position - area.lower);
+  const Float4 area_above = area.ends + area.around * (area.upper - position);
+  const Float4 work = (area_below * to_float(below) + area_above * to_float(above)) * area.inverse;
+  const Int4 cuts_off = (below == 0) | (above == 0);
+  const Float4 bonus = select(cuts_off, splat(costs.empty_bonus), splat(1.0f));
+  const Int4 inside = (position > area.lower) & (position < area.upper);
+  return select(inside, bonus * (costs.traversal + costs.intersection * work), splat(kInfinite));
+}
+
+// The best plane of an axis in each lane.
+struct Best4 {
+  Float4 cost = splat(kInfinite), position = splat(kInfinite);
+  Int4 planar_above = Int4{0, 0, 0, 0};
+};
+void consider(const Float4& cost, const Float4& position, const Int4& planar_above, Best4& best) {
+  const Int4 better = (cost < best.cost) | ((cost == best.cost) & (position < best.position));
+  best.cost = select(better, cost, best.cost);
+  best.position = select(better, position, best.position);
+  best.planar_above = (better & planar_above) | (~better & best.planar_above);
+}
+
+void take_best(const Best4& best, int axis, Plane& plane) {
+  Plane here{kInfinite, kInfinite, axis, PlanarSide::below};
+  for (int k = 0; k < 4; ++k) {
+    const float cost = best.cost[k], position = best.position[k];
+    if (cost < here.cost || (cost == here.cost && position < here.position))
+      here = {cost, position, axis, best.planar_above[k] ? PlanarSide::above : PlanarSide::below};
   }
+  if (here.cost < plane.cost) plane = here;
+}
+
+// The ends of boxes along one axis, padded with +inf to whole registers, and the positions of those
+// boxes that are flat there.
+struct alignas(16) Ends {
+  float start[kExactAtMost], end[kExactAtMost], flat[kExactAtMost];
+  size_t count = 0, flats = 0;
+};
+
+// Counts four candidates against all boxes. Boxes that start before a candidate are below it, boxes
+// that end after it above, boxes that do neither lie in it.
+void consider_ends(const Ends& ends, const float* candidates, const CellArea& area, const SahCosts& costs,
+                   Best4& best) {
+  const Float4 position = load4(candidates);
+  Int4 below{0, 0, 0, 0}, above{0, 0, 0, 0};
+  for (size_t i = 0; i < ends.count; ++i) {
+    below -= splat(ends.start[i]) < position;
+    above -= splat(ends.end[i]) > position;
+  }
+  if (ends.flats == 0) {
+    consider(cost_of(area, position, below, above, costs), position, Int4{0, 0, 0, 0}, best);
+    return;
+  }
+  Int4 planar{0, 0, 0, 0};
+  for (size_t i = 0; i < ends.flats; ++i) planar -= splat(ends.flat[i]) == position;
+  const Float4 cost_below = cost_of(area, position, below + planar, above, costs);
+  const Float4 cost_above = cost_of(area, position, below, above + planar, costs);
+  const Int4 planar_above = cost_above < cost_below;
+  consider(select(planar_above, cost_above, cost_below), position, planar_above, best);
 }
 
 }  // namespace
 
-Plane best_plane_exact(std::span<const Reference> references, const Box& cell, const SahCosts& costs) {
-  Plane best{std::numeric_limits<float>::infinity(), 0, 0, PlanarSide::below};
-  const size_t n = references.size();
-  std::vector<float> starts(n), ends(n), flats;
-  for (int axis = 0; axis < 3; ++axis) {
-    flats.clear();
-    starts.clear();
-    ends.clear();
-    for (const Reference& r : references) {
-      const float lo = component(r.box.min, axis), hi = component(r.box.max, axis);
-      if (lo == hi) {
-        flats.push_back(lo);
-      } else {
-        starts.push_back(lo);
-        ends.push_back(hi);
-      }
-    }
-    // Only values are sorted, equal ones cannot be told apart.
-    std::sort(starts.begin(), starts.end());
-    std::sort(ends.begin(), ends.end());
-    std::sort(flats.begin(), flats.end());
+Box4 bounds_of(std::span<const Reference> references) {
+  Box4 b;
+  for (const Reference& r : references) extend(b, lower(r), upper(r));
+  return b;
+}
 
-    // Sweep: at each candidate, boxes that started before it are below, boxes that have not ended are above.
+Plane best_plane_exact(std::span<const Reference> references, const Box& cell, const SahCosts& costs) {
+  Plane best{kInfinite, 0, 0, PlanarSide::below};
+  Ends ends;
+  ends.count = references.size();
+  for (int axis = 0; axis < 3; ++axis) {
     const CellArea area = cell_area(cell, axis);
-    size_t s = 0, e = 0, f = 0;
-    while (s < starts.size() || e < ends.size() || f < flats.size()) {
-      float at = std::numeric_limits<float>::infinity();
-      if (s < starts.size()) at = std::min(at, starts[s]);
-      if (e < ends.size()) at = std::min(at, ends[e]);
-      if (f < flats.size()) at = std::min(at, flats[f]);
-      const size_t flats_before = f, starts_before = s;
-      while (e < ends.size() && ends[e] == at) ++e;
-      while (f < flats.size() && flats[f] == at) ++f;
-      while (s < starts.size() && starts[s] == at) ++s;
-      const size_t above = (ends.size() - e) + (flats.size() - f);
-      consider(area, axis, at, starts_before + flats_before, above, f - flats_before, costs, best);
+    if (area.inverse == 0) continue;
+    ends.flats = 0;
+    size_t padded = 0;
+    for (const Reference& r : references) {
+      const float start = r.min[axis], end = r.max[axis];
+      ends.start[padded] = start;
+      ends.end[padded++] = end;
+      ends.flat[ends.flats] = start;
+      ends.flats += start == end;
     }
+    for (; padded % 4 != 0; ++padded) ends.start[padded] = ends.end[padded] = kInfinite;
+    Best4 here;
+    for (size_t i = 0; i < padded; i += 4) {
+      consider_ends(ends, ends.start + i, area, costs, here);
+      consider_ends(ends, ends.end + i, area, costs, here);
+    }
+    take_best(here, axis, best);
   }
   return best;
 }
 
-Plane best_plane_binned(std::span<const Reference> references, const Box& cell, const SahCosts& costs) {
-  Plane best{std::numeric_limits<float>::infinity(), 0, 0, PlanarSide::below};
-  Box tight;
-  for (const Reference& r : references) extend(tight, r.box);
-
-  // Counts of boxes that start and that end in each bin.
-  std::array<std::array<uint32_t, kBins>, 3> starts{}, ends{};
-  float lower[3], scale[3];
+BinLayout make_bins(const Box4& tight, size_t references) {
+  BinLayout layout{tight.min, splat(0), to_box(tight), references > 1024 ? 64 : references > 128 ? 32 : 16};
+  layout.lower[3] = 0;
   for (int axis = 0; axis < 3; ++axis) {
-    const float width = component(tight.max, axis) - component(tight.min, axis);
-    lower[axis] = component(tight.min, axis);
-    scale[axis] = width > 0 ? static_cast<float>(kBins) / width : 0.0f;
-    if (!(scale[axis] < 1e30f)) scale[axis] = 0;
+    const float width = tight.max[axis] - tight.min[axis];
+    const float scale = width > 0 ? static_cast<float>(layout.bins) / width : 0.0f;
+    layout.scale[axis] = scale < 1e30f ? scale : 0.0f;
   }
+  return layout;
+}
+
+void clear(const BinLayout& layout, BinCounts& counts) {
+  for (size_t axis = 0; axis < 3; ++axis) {
+    std::fill_n(counts.starts[axis], layout.bins, 0u);
+    std::fill_n(counts.ends[axis], layout.bins, 0u);
+  }
+}
+
+void count_bins(std::span<const Reference> references, const BinLayout& layout, BinCounts& counts) {
+  const Float4 last = splat(static_cast<float>(layout.bins - 1)), zero = splat(0.0f);
+  const Int4 three{-1, -1, -1, 0};
   for (const Reference& r : references) {
-    for (size_t axis = 0; axis < 3; ++axis) {
-      const int a = static_cast<int>(axis);
-      const float lo = (component(r.box.min, a) - lower[axis]) * scale[axis];
-      const float hi = (component(r.box.max, a) - lower[axis]) * scale[axis];
-      ++starts[axis][static_cast<size_t>(std::clamp(static_cast<int>(lo), 0, kBins - 1))];
-      ++ends[axis][static_cast<size_t>(std::clamp(static_cast<int>(hi), 0, kBins - 1))];
+    const Float4 lo = (keep(three, lower(r)) - layout.lower) * layout.scale;
+    const Float4 hi = (keep(three, upper(r)) - layout.lower) * layout.scale;
+    const Int4 s = truncate(least(greatest(lo, zero), last)), e = truncate(least(greatest(hi, zero), last));
+    ++counts.starts[0][s[0]], ++counts.starts[1][s[1]], ++counts.starts[2][s[2]];
+    ++counts.ends[0][e[0]], ++counts.ends[1][e[1]], ++counts.ends[2][e[2]];
+  }
+}
+
+void add_counts(const BinLayout& layout, const BinCounts& more, BinCounts& counts) {
+  for (int axis = 0; axis < 3; ++axis) {
+    for (int i = 0; i < layout.bins; ++i) {
+      counts.starts[axis][i] += more.starts[axis][i];
+      counts.ends[axis][i] += more.ends[axis][i];
     }
   }
+}
 
-  // Plane i stands between bins i-1 and i; planes 0 and kBins cut off the empty space outside.
+// Plane i stands between bins i-1 and i; planes 0 and `bins` cut off the empty space outside.
+Plane best_plane_binned(const BinLayout& layout, const BinCounts& counts, size_t references, const Box& cell,
+                        const SahCosts& costs) {
+  Plane best{kInfinite, 0, 0, PlanarSide::below};
+  alignas(16) int32_t below[kMaxBins + 4], above[kMaxBins + 4];
   for (int axis = 0; axis < 3; ++axis) {
-    const size_t a = static_cast<size_t>(axis);
-    if (scale[axis] == 0) continue;
     const CellArea area = cell_area(cell, axis);
-    size_t below = 0, above = references.size();
-    for (int i = 0; i <= kBins; ++i) {
-      const float position =
-          i == kBins ? component(tight.max, axis) : lower[axis] + static_cast<float>(i) / scale[axis];
-      consider(area, axis, position, below, above, 0, costs, best);
-      if (i < kBins) {
-        below += starts[a][static_cast<size_t>(i)];
-        above -= ends[a][static_cast<size_t>(i)];
-      }
+    if (layout.scale[axis] == 0 || area.inverse == 0) continue;
+    int32_t started = 0, left = static_cast<int32_t>(references);
+    for (int i = 0; i < layout.bins; ++i) {
+      below[i] = started;
+      above[i] = left;
+      started += static_cast<int32_t>(counts.starts[axis][i]);
+      left -= static_cast<int32_t>(counts.ends[axis][i]);
     }
+    Best4 here;
+    const float step = 1 / layout.scale[axis];
+    for (int i = 0; i < layout.bins; i += 4) {
+      Int4 b, a;
+      std::memcpy(&b, below + i, sizeof b);
+      std::memcpy(&a, above + i, sizeof a);
+      const Float4 position = layout.lower[axis] + to_float(i + Int4{0, 1, 2, 3}) * step;
+      consider(cost_of(area, position, b, a, costs), position, Int4{0, 0, 0, 0}, here);
+    }
+    const int32_t all = static_cast<int32_t>(references);
+    const Float4 end = splat(component(layout.tight.max, axis));
+    consider(cost_of(area, end, Int4{all, all, all, all}, Int4{0, 0, 0, 0}, costs), end, Int4{0, 0, 0, 0},
+             here);
+    take_best(here, axis, best);
   }
   return best;
 }
