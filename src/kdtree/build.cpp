@@ -129,7 +129,9 @@ void Builder::find_plane(std::span<Piece*> pieces) {
   const BinLayout layout = make_bins(upper.tight, upper.count);
   BinCounts& bins = pieces[0]->bins;
   for (const Piece* piece : pieces.subspan(1)) add_counts(layout, piece->bins, bins);
-  upper.plane = best_plane_binned(layout, bins, upper.count, upper.node.cell, context_.settings.costs);
+  Candidates candidates;
+  find_binned_candidates(layout, bins, upper.count, candidates);
+  upper.plane = best_plane(candidates, upper.node.cell, context_.settings.costs);
 }
 
 // Makes the children and gives each piece its places in them; false when the node is not to be split.

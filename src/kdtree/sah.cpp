@@ -7,81 +7,75 @@ namespace vitral {
 namespace {
 
 constexpr float kInfinite = std::numeric_limits<float>::infinity();
+constexpr Plane kNoPlane{kInfinite, 0, 0, PlanarSide::below, 0, 0};
 
-// The cell's surface areas as functions of where the plane is, all halved.
-struct CellArea {
-  float ends, around, lower, upper;
-  float inverse;  // 1 / area of the whole cell; 0 when that has none
+// What a plane across one axis of the cell costs. Surface areas are halved.
+struct CellCosts {
+  float lower, upper;     // of the cell, along the axis
+  float ends, around;     // area of an end, and of all sides per length
+  float traversal, work;  // intersection cost / area of the whole cell
+  float bonus;            // what is taken off for empty space
 };
-CellArea cell_area(const Box& cell, int axis) {
-  const Vec3 e = extent(cell);
-  const float u = component(e, (axis + 1) % 3), v = component(e, (axis + 2) % 3), w = component(e, axis);
-  const float whole = u * v + (u + v) * w;
-  return {u * v, u + v, component(cell.min, axis), component(cell.max, axis), whole > 0 ? 1 / whole : 0.0f};
-}
 
-// The cost of four planes, with that many references on their sides; +inf for those that do not lie
+// The cost of four planes with so many references on their sides; +inf for those that do not lie
 // strictly inside the cell.
-Float4 cost_of(const CellArea& area, const Float4& position, const Int4& below, const Int4& above,
-               const SahCosts& costs) {
-  const Float4 area_below = area.ends + area.around * (position - area.lower);
-  const Float4 area_above = area.ends + area.around * (area.upper - position);
-  const Float4 work = (area_below * to_float(below) + area_above * to_float(above)) * area.inverse;
-  const Int4 cuts_off = (below == 0) | (above == 0);
-  const Float4 bonus = select(cuts_off, splat(costs.empty_bonus), splat(1.0f));
-  const Int4 inside = (position > area.lower) & (position < area.upper);
-  return select(inside, bonus * (costs.traversal + costs.intersection * work), splat(kInfinite));
+Float4 cost_of(const CellCosts& c, const Float4& position, const Float4& below, const Float4& above) {
+  const Float4 height = position - c.lower, rest = c.upper - position;
+  const Float4 work = (c.ends + c.around * height) * below + (c.ends + c.around * rest) * above;
+  const Int4 cuts_off = least(below, above) == 0.0f, outside = least(height, rest) <= 0.0f;
+  const Float4 cost = (c.traversal + work * c.work) * (1.0f - keep(cuts_off, splat(c.bonus)));
+  return greatest(cost, keep(outside, splat(kInfinite)));
 }
 
-// The best plane of an axis in each lane.
+// The best plane so far in each lane; its code is 2 * (axis * Candidates::kMost + number), + 1 with what
+// lies in it above.
 struct Best4 {
-  Float4 cost = splat(kInfinite), position = splat(kInfinite);
-  Int4 planar_above = Int4{0, 0, 0, 0};
+  Float4 cost = splat(kInfinite);
+  Int4 code{0, 0, 0, 0};
 };
-void consider(const Float4& cost, const Float4& position, const Int4& planar_above, Best4& best) {
-  const Int4 better = (cost < best.cost) | ((cost == best.cost) & (position < best.position));
-  best.cost = select(better, cost, best.cost);
-  best.position = select(better, position, best.position);
-  best.planar_above = (better & planar_above) | (~better & best.planar_above);
+void consider(const Float4& cost, const Int4& code, Best4& best) {
+  const Int4 better = cost < best.cost;
+  best.cost = least(cost, best.cost);
+  best.code = (better & code) | (~better & best.code);
 }
 
-void take_best(const Best4& best, int axis, Plane& plane) {
-  Plane here{kInfinite, kInfinite, axis, PlanarSide::below};
-  for (int k = 0; k < 4; ++k) {
-    const float cost = best.cost[k], position = best.position[k];
-    if (cost < here.cost || (cost == here.cost && position < here.position))
-      here = {cost, position, axis, best.planar_above[k] ? PlanarSide::above : PlanarSide::below};
+// All candidates of an axis.
+void consider_axis(const Candidates::Axis& planes, int axis, const CellCosts& c, Best4& best) {
+  Int4 code = 2 * (axis * static_cast<int>(Candidates::kMost) + Int4{0, 1, 2, 3});
+  for (size_t i = 0; i < planes.count; i += 4, code += 8) {
+    const Float4 position = load4(planes.position + i), below = load4(planes.below + i),
+                 above = load4(planes.above + i);
+    if (!planes.has_planar) {
+      consider(cost_of(c, position, below, above), code, best);
+      continue;
+    }
+    const Float4 planar = load4(planes.planar + i);
+    const Float4 cost_below = cost_of(c, position, below + planar, above);
+    const Float4 cost_above = cost_of(c, position, below, above + planar);
+    consider(least(cost_above, cost_below), code - (cost_above < cost_below), best);
   }
-  if (here.cost < plane.cost) plane = here;
 }
 
-// The ends of boxes along one axis, padded with +inf to whole registers, and the positions of those
-// boxes that are flat there.
-struct alignas(16) Ends {
-  float start[kExactAtMost], end[kExactAtMost], flat[kExactAtMost];
-  size_t count = 0, flats = 0;
-};
-
-// Counts four candidates against all boxes. Boxes that start before a candidate are below it, boxes
-// that end after it above, boxes that do neither lie in it.
-void consider_ends(const Ends& ends, const float* candidates, const CellArea& area, const SahCosts& costs,
-                   Best4& best) {
-  const Float4 position = load4(candidates);
-  Int4 below{0, 0, 0, 0}, above{0, 0, 0, 0};
-  for (size_t i = 0; i < ends.count; ++i) {
-    below -= splat(ends.start[i]) < position;
-    above -= splat(ends.end[i]) > position;
-  }
-  if (ends.flats == 0) {
-    consider(cost_of(area, position, below, above, costs), position, Int4{0, 0, 0, 0}, best);
-    return;
-  }
-  Int4 planar{0, 0, 0, 0};
-  for (size_t i = 0; i < ends.flats; ++i) planar -= splat(ends.flat[i]) == position;
-  const Float4 cost_below = cost_of(area, position, below + planar, above, costs);
-  const Float4 cost_above = cost_of(area, position, below, above + planar, costs);
-  const Int4 planar_above = cost_above < cost_below;
-  consider(select(planar_above, cost_above, cost_below), position, planar_above, best);
+// The plane of the least cost and, among those, of the least code.
+Plane decode(const Best4& best, const Candidates& candidates) {
+  const float cost = least(least(best.cost[0], best.cost[1]), least(best.cost[2], best.cost[3]));
+  if (!(cost < kInfinite)) return kNoPlane;
+  int32_t code = std::numeric_limits<int32_t>::max();
+  for (int k = 0; k < 4; ++k) code = std::min(code, best.cost[k] == cost ? best.code[k] : code);
+  const int axis = code / static_cast<int>(2 * Candidates::kMost);
+  const size_t i = static_cast<size_t>(code) / 2 % Candidates::kMost;
+  const Candidates::Axis& planes = candidates.axis[axis];
+  Plane plane{cost,
+              planes.position[i],
+              axis,
+              PlanarSide::below,
+              static_cast<uint32_t>(planes.below[i]),
+              static_cast<uint32_t>(planes.above[i])};
+  if (planes.has_planar ? code % 2 != 0 : plane.below == 0) plane.planar = PlanarSide::above;
+  if (planes.has_planar)
+    (plane.planar == PlanarSide::above ? plane.above : plane.below) +=
+        static_cast<uint32_t>(planes.planar[i]);
+  return plane;
 }
 
 }  // namespace
@@ -92,35 +86,62 @@ Box4 bounds_of(std::span<const Reference> references) {
   return b;
 }
 
-Plane best_plane_exact(std::span<const Reference> references, const Box& cell, const SahCosts& costs) {
-  Plane best{kInfinite, 0, 0, PlanarSide::below};
-  Ends ends;
-  ends.count = references.size();
+Plane best_plane(const Candidates& candidates, const Box& cell, const SahCosts& costs) {
+  const float lower[3] = {cell.min.x, cell.min.y, cell.min.z},
+              upper[3] = {cell.max.x, cell.max.y, cell.max.z};
+  const Vec3 e = extent(cell);
+  const float side[3] = {e.x, e.y, e.z}, area = e.x * e.y + (e.x + e.y) * e.z;
+  const float work = costs.intersection / area;
+  if (!(work < kInfinite)) return kNoPlane;
+  Best4 best;
   for (int axis = 0; axis < 3; ++axis) {
-    const CellArea area = cell_area(cell, axis);
-    if (area.inverse == 0) continue;
-    ends.flats = 0;
-    size_t padded = 0;
-    for (const Reference& r : references) {
-      const float start = r.min[axis], end = r.max[axis];
-      ends.start[padded] = start;
-      ends.end[padded++] = end;
-      ends.flat[ends.flats] = start;
-      ends.flats += start == end;
-    }
-    for (; padded % 4 != 0; ++padded) ends.start[padded] = ends.end[padded] = kInfinite;
-    Best4 here;
-    for (size_t i = 0; i < padded; i += 4) {
-      consider_ends(ends, ends.start + i, area, costs, here);
-      consider_ends(ends, ends.end + i, area, costs, here);
-    }
-    take_best(here, axis, best);
+    const float u = side[(axis + 1) % 3], v = side[(axis + 2) % 3];
+    consider_axis(candidates.axis[axis], axis,
+                  {lower[axis], upper[axis], u * v, u + v, costs.traversal, work, 1 - costs.empty_bonus},
+                  best);
   }
-  return best;
+  return decode(best, candidates);
+}
+
+// Boxes that start before a candidate are below it, boxes that end after it above, boxes that do
+// neither lie in it.
+void find_exact_candidates(std::span<const Reference> references, Candidates& candidates) {
+  const size_t n = references.size();
+  for (int axis = 0; axis < 3; ++axis) {
+    Candidates::Axis& planes = candidates.axis[axis];
+    float* const start = planes.position;
+    float* const end = planes.position + n;
+    float flat[kExactAtMost];
+    size_t flats = 0;
+    for (size_t i = 0; i < n; ++i) {
+      start[i] = references[i].min[axis];
+      end[i] = references[i].max[axis];
+      flat[flats] = start[i];
+      flats += start[i] == end[i];
+    }
+    for (planes.count = 2 * n; planes.count % 4 != 0; ++planes.count)
+      planes.position[planes.count] = kInfinite;
+    planes.has_planar = flats != 0;
+    for (size_t k = 0; k < planes.count; k += 4) {
+      const Float4 position = load4(planes.position + k);
+      Int4 below{0, 0, 0, 0}, above{0, 0, 0, 0};
+      for (size_t i = 0; i < n; ++i) {
+        below -= splat(start[i]) < position;
+        above -= splat(end[i]) > position;
+      }
+      store4(planes.below + k, to_float(below));
+      store4(planes.above + k, to_float(above));
+      if (flats == 0) continue;
+      Int4 planar{0, 0, 0, 0};
+      for (size_t i = 0; i < flats; ++i) planar -= splat(flat[i]) == position;
+      store4(planes.planar + k, to_float(planar));
+    }
+  }
 }
 
 BinLayout make_bins(const Box4& tight, size_t references) {
-  BinLayout layout{tight.min, splat(0), to_box(tight), references > 1024 ? 64 : references > 128 ? 32 : 16};
+  const size_t bins = references > 1024 ? 64 : references > 128 ? 32 : 16;
+  BinLayout layout{tight.min, splat(0), tight.max, bins};
   layout.lower[3] = 0;
   for (int axis = 0; axis < 3; ++axis) {
     const float width = tight.max[axis] - tight.min[axis];
@@ -150,8 +171,8 @@ void count_bins(std::span<const Reference> references, const BinLayout& layout, 
 }
 
 void add_counts(const BinLayout& layout, const BinCounts& more, BinCounts& counts) {
-  for (int axis = 0; axis < 3; ++axis) {
-    for (int i = 0; i < layout.bins; ++i) {
+  for (size_t axis = 0; axis < 3; ++axis) {
+    for (size_t i = 0; i < layout.bins; ++i) {
       counts.starts[axis][i] += more.starts[axis][i];
       counts.ends[axis][i] += more.ends[axis][i];
     }
@@ -159,36 +180,29 @@ void add_counts(const BinLayout& layout, const BinCounts& more, BinCounts& count
 }
 
 // Plane i stands between bins i-1 and i; planes 0 and `bins` cut off the empty space outside.
-Plane best_plane_binned(const BinLayout& layout, const BinCounts& counts, size_t references, const Box& cell,
-                        const SahCosts& costs) {
-  Plane best{kInfinite, 0, 0, PlanarSide::below};
-  alignas(16) int32_t below[kMaxBins + 4], above[kMaxBins + 4];
+void find_binned_candidates(const BinLayout& layout, const BinCounts& counts, size_t references,
+                            Candidates& candidates) {
   for (int axis = 0; axis < 3; ++axis) {
-    const CellArea area = cell_area(cell, axis);
-    if (layout.scale[axis] == 0 || area.inverse == 0) continue;
-    int32_t started = 0, left = static_cast<int32_t>(references);
-    for (int i = 0; i < layout.bins; ++i) {
-      below[i] = started;
-      above[i] = left;
-      started += static_cast<int32_t>(counts.starts[axis][i]);
-      left -= static_cast<int32_t>(counts.ends[axis][i]);
-    }
-    Best4 here;
+    Candidates::Axis& planes = candidates.axis[axis];
+    planes.count = 0;
+    planes.has_planar = false;
+    if (layout.scale[axis] == 0) continue;
+    uint32_t below = 0, above = static_cast<uint32_t>(references);
     const float step = 1 / layout.scale[axis];
-    for (int i = 0; i < layout.bins; i += 4) {
-      Int4 b, a;
-      std::memcpy(&b, below + i, sizeof b);
-      std::memcpy(&a, above + i, sizeof a);
-      const Float4 position = layout.lower[axis] + to_float(i + Int4{0, 1, 2, 3}) * step;
-      consider(cost_of(area, position, b, a, costs), position, Int4{0, 0, 0, 0}, here);
+    for (size_t i = 0; i < layout.bins; ++i) {
+      planes.position[i] = layout.lower[axis] + static_cast<float>(i) * step;
+      planes.below[i] = static_cast<float>(below);
+      planes.above[i] = static_cast<float>(above);
+      below += counts.starts[axis][i];
+      above -= counts.ends[axis][i];
     }
-    const int32_t all = static_cast<int32_t>(references);
-    const Float4 end = splat(component(layout.tight.max, axis));
-    consider(cost_of(area, end, Int4{all, all, all, all}, Int4{0, 0, 0, 0}, costs), end, Int4{0, 0, 0, 0},
-             here);
-    take_best(here, axis, best);
+    for (size_t i = layout.bins; i < layout.bins + 4; ++i) {
+      planes.position[i] = layout.upper[axis];
+      planes.below[i] = static_cast<float>(references);
+      planes.above[i] = 0;
+    }
+    planes.count = layout.bins + 4;
   }
-  return best;
 }
 
 }  // namespace vitral

@@ -58,22 +58,39 @@ struct Plane {
   float position;
   int axis;
   PlanarSide planar;
+  uint32_t below, above;  // references on its sides; 0 is exact, other counts are those of the bins
 };
 
-// The best of all planes at the ends of the references' boxes. Every plane is counted against every
-// reference, which is quicker than sorting for as few as these: at most kExactAtMost.
-// Ties go to the lower axis, then to the lower position, then to PlanarSide::below.
-inline constexpr size_t kExactAtMost = 64;
-Plane best_plane_exact(std::span<const Reference> references, const Box& cell, const SahCosts& costs);
+// The planes worth looking at, on each axis, with the references on their sides. They depend on the
+// references alone: when a plane cuts empty space off a cell, those of the rest are the same again.
+inline constexpr size_t kExactAtMost = 64;  // references
+inline constexpr size_t kMaxBins = 64;
+struct alignas(16) Candidates {
+  static constexpr size_t kMost = 2 * kExactAtMost;
+  struct Axis {
+    size_t count;     // a multiple of four; the last ones may lie at +inf
+    bool has_planar;  // false: what lies in a plane goes below, above if nothing else is below
+    float position[kMost];
+    float below[kMost], above[kMost];  // references that lie below or above at least in part
+    float planar[kMost];               // and in the plane; not set unless has_planar
+  } axis[3];
+};
 
-// The best of the planes evenly spaced on each axis between the outermost ends (Hunt, Mark and Stoll
-// 2006; Shevtsov, Soupikov and Kapustin 2007): how many boxes start and end between two of them is
-// counted, for a large node in several pieces whose counts are added. Ties as above.
-inline constexpr int kMaxBins = 64;
+// The best candidate strictly inside the cell. Ties go to the lower axis, then to the first candidate,
+// then to PlanarSide::below. A cell of no area has none.
+Plane best_plane(const Candidates& candidates, const Box& cell, const SahCosts& costs);
+
+// All planes at the ends of the references' boxes. Every plane is counted against every reference,
+// which for at most kExactAtMost of them is quicker than sorting.
+void find_exact_candidates(std::span<const Reference> references, Candidates& candidates);
+
+// Planes evenly spaced on each axis between the outermost ends (Hunt, Mark and Stoll 2006; Shevtsov,
+// Soupikov and Kapustin 2007): how many boxes start and end between two of them is counted, for a
+// large node in several pieces whose counts are added.
 struct BinLayout {
   Float4 lower, scale;  // bin = (x - lower) * scale; scale is 0 on an axis that is too thin to cut
-  Box tight;            // the outermost ends
-  int bins;             // per axis
+  Float4 upper;
+  size_t bins;  // per axis
 };
 struct BinCounts {
   uint32_t starts[3][kMaxBins];
@@ -83,7 +100,7 @@ BinLayout make_bins(const Box4& tight, size_t references);
 void clear(const BinLayout& layout, BinCounts& counts);
 void count_bins(std::span<const Reference> references, const BinLayout& layout, BinCounts& counts);
 void add_counts(const BinLayout& layout, const BinCounts& more, BinCounts& counts);
-Plane best_plane_binned(const BinLayout& layout, const BinCounts& counts, size_t references, const Box& cell,
-                        const SahCosts& costs);
+void find_binned_candidates(const BinLayout& layout, const BinCounts& counts, size_t references,
+                            Candidates& candidates);
 
 }  // namespace vitral

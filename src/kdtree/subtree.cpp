@@ -12,15 +12,15 @@ void set_component(Vec3& v, int axis, float x) {
   (axis == 0 ? v.x : axis == 1 ? v.y : v.z) = x;
 }
 
-Plane find_plane(const BuildContext& context, std::span<const Reference> references, const Node& node) {
-  const SahCosts& costs = context.settings.costs;
+void find_candidates(const BuildContext& context, std::span<const Reference> references,
+                     Candidates& candidates) {
   if (references.size() <= std::min(context.settings.binned_above, kExactAtMost))
-    return best_plane_exact(references, node.cell, costs);
+    return find_exact_candidates(references, candidates);
   const BinLayout layout = make_bins(bounds_of(references), references.size());
   BinCounts counts;
   clear(layout, counts);
   count_bins(references, layout, counts);
-  return best_plane_binned(layout, counts, references.size(), node.cell, costs);
+  find_binned_candidates(layout, counts, references.size(), candidates);
 }
 
 // Sorts the n references at `first` to the sides of the plane: those below stay there, those above
@@ -45,23 +45,39 @@ void distribute(const BuildContext& context, const Plane& plane, Reference* firs
     cut(context.triangles[r->triangle], *r, plane, *below++, *above++);
 }
 
+// Finds the plane of a node with those references. Planes that cut off empty space come first, as
+// nodes of their own with an empty leaf: `node` and its index `at` become those of the rest. False
+// when the rest is to be a leaf.
+bool find_plane(const BuildContext& context, std::span<const Reference> references, Node& node, size_t& at,
+                Subtree& out, Plane& plane) {
+  const size_t n = references.size();
+  if (n <= 1 || node.depth >= context.max_depth) return false;
+  Candidates candidates;
+  find_candidates(context, references, candidates);
+  for (; node.depth < context.max_depth; ++node.depth) {
+    plane = best_plane(candidates, node.cell, context.settings.costs);
+    if (!is_cheaper_than_leaf(plane, n, context.settings.costs)) return false;
+    if (!cuts_off_empty_space(plane)) return true;
+    const size_t pair = out.nodes.size();
+    out.nodes.resize(pair + 2);
+    out.nodes[at] = inner_node(plane, pair);
+    const bool empty_below = plane.below == 0;
+    out.nodes[pair + !empty_below] = leaf_node({}, out.references);
+    at = pair + empty_below;
+    set_component(empty_below ? node.cell.min : node.cell.max, plane.axis, plane.position);
+  }
+  return false;
+}
+
 // Decides on the node whose n references begin at `first` of the scratch; what lies before them is
 // kept, what lies behind is free.
-void finish(const BuildContext& context, const Node& node, size_t first, size_t n, size_t at,
-            Scratch& scratch) {
+void finish(const BuildContext& context, Node node, size_t first, size_t n, size_t at, Scratch& scratch) {
   Subtree& out = scratch.subtree;
   const std::span<const Reference> references(scratch.references.data() + first, n);
-  Plane plane{};
+  Plane plane;
   Counts counts;
-  bool splits = false;
-  if (n > 1 && node.depth < context.max_depth) {
-    plane = find_plane(context, references, node);
-    if (is_cheaper_than_leaf(plane, n, context.settings.costs)) {
-      counts = count_sides(references, plane);
-      splits = is_allowed(node, counts, n);
-    }
-  }
-  if (!splits) {
+  if (!find_plane(context, references, node, at, out, plane) ||
+      !is_allowed(node, counts = count_sides(references, plane), n)) {
     out.nodes[at] = leaf_node(references, out.references);
     return;
   }

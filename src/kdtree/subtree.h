@@ -30,6 +30,10 @@ Counts count_sides(std::span<const Reference> references, const Plane& plane);
 
 // A split that costs more than a leaf, that would use up more references than the node has to spare,
 // or that separates nothing is not made.
+// A plane with nothing on one side needs no sorting and leaves the candidates as they are.
+static inline bool cuts_off_empty_space(const Plane& plane) {
+  return plane.below == 0 || plane.above == 0;
+}
 bool is_cheaper_than_leaf(const Plane& plane, size_t references, const SahCosts& costs);
 bool is_allowed(const Node& node, const Counts& counts, size_t references);
 
