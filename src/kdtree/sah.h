@@ -30,6 +30,11 @@ static inline Float4 upper(const Reference& r) {
   return load4(r.max);
 }
 
+static inline void store(const Float4& lower, const Float4& upper, Reference& r) {
+  std::memcpy(&r, &lower, sizeof lower);
+  std::memcpy(r.max, &upper, sizeof upper);
+}
+
 // Bounds as two registers; the fourth lanes hold anything.
 struct Box4 {
   Float4 min = splat(std::numeric_limits<float>::infinity());

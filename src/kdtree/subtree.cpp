@@ -41,6 +41,10 @@ void distribute(const BuildContext& context, const Plane& plane, Reference* firs
     above += (ends_above & !starts_below) | (planar & !planar_below);
     straddling += starts_below & ends_above;
   }
+  for (const Reference* r = first + 2 * n; r != straddling; ++r) {
+    const char* p = reinterpret_cast<const char*>(&context.triangles[r->triangle]);
+    __builtin_prefetch(p), __builtin_prefetch(p + 39);
+  }
   for (const Reference* r = first + 2 * n; r != straddling; ++r)
     cut(context.triangles[r->triangle], *r, plane, *below++, *above++);
 }
