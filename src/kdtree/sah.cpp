@@ -60,10 +60,11 @@ void consider_axis(const Candidates::Axis& planes, int axis, const CellCosts& c,
 Plane decode(const Best4& best, const Candidates& candidates) {
   const float cost = least(least(best.cost[0], best.cost[1]), least(best.cost[2], best.cost[3]));
   if (!(cost < kInfinite)) return kNoPlane;
-  int32_t code = std::numeric_limits<int32_t>::max();
-  for (int k = 0; k < 4; ++k) code = std::min(code, best.cost[k] == cost ? best.code[k] : code);
-  const int axis = code / static_cast<int>(2 * Candidates::kMost);
-  const size_t i = static_cast<size_t>(code) / 2 % Candidates::kMost;
+  const Int4 codes = (best.cost == cost) & (best.code + 1);  // 0 where the cost is not the least
+  uint32_t code = std::numeric_limits<uint32_t>::max();
+  for (int k = 0; k < 4; ++k) code = std::min(code, static_cast<uint32_t>(codes[k]) - 1);
+  const int axis = static_cast<int>(code / (2 * Candidates::kMost));
+  const size_t i = code / 2 % Candidates::kMost;
   const Candidates::Axis& planes = candidates.axis[axis];
   Plane plane{cost,
               planes.position[i],
@@ -76,6 +77,46 @@ Plane decode(const Best4& best, const Candidates& candidates) {
     (plane.planar == PlanarSide::above ? plane.above : plane.below) +=
         static_cast<uint32_t>(planes.planar[i]);
   return plane;
+}
+
+// Counts 4 * groups of exact candidates, from number k on, against all n boxes. Boxes that start before
+// a candidate are below it, boxes that end after it above.
+template <size_t groups>
+void count_sides(Candidates::Axis& planes, size_t n, size_t k) {
+  const float *start = planes.position, *end = planes.position + n;
+  Float4 position[groups];
+  Int4 below[groups], above[groups];
+  for (size_t g = 0; g < groups; ++g) {
+    position[g] = load4(planes.position + k + 4 * g);
+    below[g] = above[g] = Int4{0, 0, 0, 0};
+  }
+  for (size_t i = 0; i < n; ++i) {
+    const Float4 starts = splat(start[i]), ends = splat(end[i]);
+    for (size_t g = 0; g < groups; ++g) {
+      below[g] -= starts < position[g];
+      above[g] -= ends > position[g];
+    }
+  }
+  for (size_t g = 0; g < groups; ++g) {
+    store4(planes.below + k + 4 * g, to_float(below[g]));
+    store4(planes.above + k + 4 * g, to_float(above[g]));
+  }
+}
+
+// How many boxes lie in each exact candidate.
+void count_planar(Candidates::Axis& planes, size_t n) {
+  float flat[kExactAtMost];
+  size_t flats = 0;
+  for (size_t i = 0; i < n; ++i) {
+    flat[flats] = planes.position[i];
+    flats += planes.position[i] == planes.position[n + i];
+  }
+  for (size_t k = 0; k < planes.count; k += 4) {
+    const Float4 position = load4(planes.position + k);
+    Int4 planar{0, 0, 0, 0};
+    for (size_t i = 0; i < flats; ++i) planar -= splat(flat[i]) == position;
+    store4(planes.planar + k, to_float(planar));
+  }
 }
 
 }  // namespace
@@ -103,39 +144,26 @@ Plane best_plane(const Candidates& candidates, const Box& cell, const SahCosts& 
   return decode(best, candidates);
 }
 
-// Boxes that start before a candidate are below it, boxes that end after it above, boxes that do
-// neither lie in it.
 void find_exact_candidates(std::span<const Reference> references, Candidates& candidates) {
   const size_t n = references.size();
+  Int4 flat{0, 0, 0, 0};
+  for (size_t i = 0; i < n; ++i) {
+    const Float4 start = lower(references[i]), end = upper(references[i]);
+    flat |= start == end;
+    for (int axis = 0; axis < 3; ++axis) {
+      candidates.axis[axis].position[i] = start[axis];
+      candidates.axis[axis].position[n + i] = end[axis];
+    }
+  }
   for (int axis = 0; axis < 3; ++axis) {
     Candidates::Axis& planes = candidates.axis[axis];
-    float* const start = planes.position;
-    float* const end = planes.position + n;
-    float flat[kExactAtMost];
-    size_t flats = 0;
-    for (size_t i = 0; i < n; ++i) {
-      start[i] = references[i].min[axis];
-      end[i] = references[i].max[axis];
-      flat[flats] = start[i];
-      flats += start[i] == end[i];
-    }
     for (planes.count = 2 * n; planes.count % 4 != 0; ++planes.count)
       planes.position[planes.count] = kInfinite;
-    planes.has_planar = flats != 0;
-    for (size_t k = 0; k < planes.count; k += 4) {
-      const Float4 position = load4(planes.position + k);
-      Int4 below{0, 0, 0, 0}, above{0, 0, 0, 0};
-      for (size_t i = 0; i < n; ++i) {
-        below -= splat(start[i]) < position;
-        above -= splat(end[i]) > position;
-      }
-      store4(planes.below + k, to_float(below));
-      store4(planes.above + k, to_float(above));
-      if (flats == 0) continue;
-      Int4 planar{0, 0, 0, 0};
-      for (size_t i = 0; i < flats; ++i) planar -= splat(flat[i]) == position;
-      store4(planes.planar + k, to_float(planar));
-    }
+    planes.has_planar = flat[axis] != 0;
+    size_t k = 0;
+    for (; k + 8 <= planes.count; k += 8) count_sides<2>(planes, n, k);
+    if (k < planes.count) count_sides<1>(planes, n, k);
+    if (planes.has_planar) count_planar(planes, n);
   }
 }
 
