@@ -63,7 +63,7 @@ struct Plane {
   float position;
   int axis;
   PlanarSide planar;
-  uint32_t below, above;  // references on its sides; 0 is exact, other counts are those of the bins
+  uint32_t below, above;  // references on its sides; among bins, only 0 is exact
 };
 
 // The planes worth looking at, on each axis, with the references on their sides. They depend on the

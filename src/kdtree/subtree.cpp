@@ -12,10 +12,13 @@ void set_component(Vec3& v, int axis, float x) {
   (axis == 0 ? v.x : axis == 1 ? v.y : v.z) = x;
 }
 
+bool is_exact(const BuildContext& context, size_t references) {
+  return references <= std::min(context.settings.binned_above, kExactAtMost);
+}
+
 void find_candidates(const BuildContext& context, std::span<const Reference> references,
                      Candidates& candidates) {
-  if (references.size() <= std::min(context.settings.binned_above, kExactAtMost))
-    return find_exact_candidates(references, candidates);
+  if (is_exact(context, references.size())) return find_exact_candidates(references, candidates);
   const BinLayout layout = make_bins(bounds_of(references), references.size());
   BinCounts counts;
   clear(layout, counts);
@@ -80,8 +83,12 @@ void finish(const BuildContext& context, Node node, size_t first, size_t n, size
   const std::span<const Reference> references(scratch.references.data() + first, n);
   Plane plane;
   Counts counts;
-  if (!find_plane(context, references, node, at, out, plane) ||
-      !is_allowed(node, counts = count_sides(references, plane), n)) {
+  bool splits = find_plane(context, references, node, at, out, plane);
+  if (splits) {
+    counts = is_exact(context, n) ? Counts{plane.below, plane.above} : count_sides(references, plane);
+    splits = is_allowed(node, counts, n);
+  }
+  if (!splits) {
     out.nodes[at] = leaf_node(references, out.references);
     return;
   }
@@ -137,11 +144,20 @@ KdNode inner_node(const Plane& plane, size_t first_child) {
           static_cast<uint32_t>(first_child) << 2 | static_cast<uint32_t>(plane.axis)};
 }
 
+// Triangles stand in a leaf in the order of their numbers.
 KdNode leaf_node(std::span<const Reference> references, std::vector<uint32_t>& out) {
-  const KdNode leaf{static_cast<uint32_t>(references.size()), static_cast<uint32_t>(out.size()) << 2 | 3u};
-  for (const Reference& r : references) out.push_back(r.triangle);
-  std::sort(out.end() - static_cast<std::ptrdiff_t>(references.size()), out.end());
-  return leaf;
+  const size_t first = out.size(), n = references.size();
+  out.resize(first + n);
+  uint32_t* const numbers = out.data() + first;
+  constexpr size_t kInsertAtMost = 16;
+  for (size_t i = 0; i < n; ++i) {
+    const uint32_t number = references[i].triangle;
+    size_t at = i;
+    for (; n <= kInsertAtMost && at > 0 && numbers[at - 1] > number; --at) numbers[at] = numbers[at - 1];
+    numbers[at] = number;
+  }
+  if (n > kInsertAtMost) std::sort(numbers, numbers + n);
+  return {static_cast<uint32_t>(n), static_cast<uint32_t>(first) << 2 | 3u};
 }
 
 void ReferenceBuffer::grow(size_t capacity, size_t kept) {
