@@ -307,6 +307,7 @@ KdTree build_kdtree(const std::vector<KdTriangle>& triangles, const std::vector<
   tree.nodes.resize(nodes);
   tree.references.resize(references);
   executor(landings.size(), [&](size_t i) { land(landings[i], tree); });
+  if (on_progress) on_progress(1);
   return tree;
 }
 

@@ -18,8 +18,8 @@ struct BuildSettings {
 // Runs body(i) for every i in [0, count), in any order and on any threads.
 using Executor = std::function<void(size_t count, const std::function<void(size_t)>& body)>;
 
-// Is told which share of the references is finished, in [0, 1] and never less than before; called
-// from any thread, one at a time.
+// Is told which share of the references is finished, in [0, 1], never less than before and 1 at last;
+// called from any thread, one at a time.
 using BuildProgress = std::function<void(double share)>;
 
 // Builds over the triangles listed in `members`, numbers into `triangles`. The tree is the same
