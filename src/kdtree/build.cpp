@@ -44,13 +44,19 @@ struct Piece {
 
 class Builder {
  public:
-  Builder(const BuildContext& context, const Executor& executor, const BuildProgress& on_progress)
-      : context_(context), executor_(executor), on_progress_(on_progress) {}
+  // New nodes are added to `uppers`.
+  Builder(const BuildContext& context, const Executor& executor, const BuildProgress& on_progress,
+          std::deque<Upper>& uppers)
+      : context_(context), executor_(executor), on_progress_(on_progress), uppers_(uppers) {}
 
-  Upper* make_root(const std::vector<uint32_t>& members);
-  void split_rounds(Upper* root);
+  void build(Upper& root, const std::vector<uint32_t>& members) {
+    make_root(root, members);
+    split_rounds(root);
+  }
 
  private:
+  void make_root(Upper& root, const std::vector<uint32_t>& members);
+  void split_rounds(Upper& root);
   void finish(Upper& upper);
   void make_leaf(Upper& upper);
   void find_plane(std::span<Piece*> pieces);
@@ -63,7 +69,7 @@ class Builder {
   BuildContext context_;
   const Executor& executor_;
   const BuildProgress& on_progress_;
-  std::deque<Upper> uppers_;
+  std::deque<Upper>& uppers_;
   ReferenceBuffer now_, next_;  // the references of this round's nodes and of their children
   std::mutex mutex_;            // of what follows
   std::vector<std::unique_ptr<Scratch>> free_scratch_;
@@ -71,8 +77,7 @@ class Builder {
 };
 
 // Every triangle with the bounds of all of it.
-Upper* Builder::make_root(const std::vector<uint32_t>& members) {
-  Upper& root = uppers_.emplace_back();
+void Builder::make_root(Upper& root, const std::vector<uint32_t>& members) {
   root.count = members.size();
   root.share = 1;
   now_.grow(members.size(), 0);
@@ -90,7 +95,6 @@ Upper* Builder::make_root(const std::vector<uint32_t>& members) {
   });
   for (const Box4& t : tight) extend(root.tight, t.min, t.max);
   root.node = {to_box(root.tight), 0, 3 * members.size()};
-  return &root;
 }
 
 void Builder::advance(double share) {
@@ -185,8 +189,8 @@ void Builder::scatter(Piece& piece) {
   }
 }
 
-void Builder::split_rounds(Upper* root) {
-  std::vector<Upper*> round{root};
+void Builder::split_rounds(Upper& root) {
+  std::vector<Upper*> round{&root};
   while (!round.empty()) {
     // Small nodes are finished; large ones are counted in pieces.
     std::vector<Upper*> small;
@@ -235,6 +239,7 @@ void Builder::split_rounds(Upper* root) {
       round.insert(round.end(), {upper.below, upper.above});
       split.insert(split.end(), of_node.begin(), of_node.end());
     });
+    if (next_.capacity() > 2 * next_size) next_ = ReferenceBuffer();
     next_.grow(next_size, 0);
     executor_(split.size(), [&](size_t i) { scatter(*split[i]); });
     for (const Piece* piece : split) {
@@ -294,16 +299,17 @@ int depth_limit(size_t triangles) {
 KdTree build_kdtree(const std::vector<KdTriangle>& triangles, const std::vector<uint32_t>& members,
                     const BuildSettings& settings, const Executor& executor,
                     const BuildProgress& on_progress) {
-  Builder builder({triangles, settings, depth_limit(members.size())}, executor, on_progress);
-  Upper* root = builder.make_root(members);
-  builder.split_rounds(root);
+  std::deque<Upper> uppers;
+  Upper& root = uppers.emplace_back();
+  Builder({triangles, settings, depth_limit(members.size())}, executor, on_progress, uppers)
+      .build(root, members);
 
   KdTree tree;
-  tree.bounds = root->node.cell;
+  tree.bounds = root.node.cell;
   tree.nodes.resize(2, KdNode{0, 3});
   std::vector<Landing> landings;
   size_t nodes = 2, references = 0;
-  lay_out(*root, 0, tree, nodes, references, landings);
+  lay_out(root, 0, tree, nodes, references, landings);
   tree.nodes.resize(nodes);
   tree.references.resize(references);
   executor(landings.size(), [&](size_t i) { land(landings[i], tree); });
