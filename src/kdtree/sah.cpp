@@ -79,23 +79,30 @@ Plane decode(const Best4& best, const Candidates& candidates) {
   return plane;
 }
 
-// Counts 4 * groups of exact candidates, from number k on, against all n boxes. Boxes that start before
-// a candidate are below it, boxes that end after it above.
+// The positions of an axis are the places where boxes start, then those where boxes end.
+struct Ends {
+  size_t starts, ends;
+  uint32_t below, above;  // boxes that start before all of these, and that end after all of them
+};
+
+// Counts 4 * groups of candidates, from number k on. Boxes that start before a candidate are below it,
+// boxes that end after it above.
 template <size_t groups>
-void count_sides(Candidates::Axis& planes, size_t n, size_t k) {
-  const float *start = planes.position, *end = planes.position + n;
+void count_sides(Candidates::Axis& planes, const Ends& e, size_t k) {
   Float4 position[groups];
   Int4 below[groups], above[groups];
   for (size_t g = 0; g < groups; ++g) {
     position[g] = load4(planes.position + k + 4 * g);
-    below[g] = above[g] = Int4{0, 0, 0, 0};
+    below[g] = Int4{0, 0, 0, 0} + static_cast<int32_t>(e.below);
+    above[g] = Int4{0, 0, 0, 0} + static_cast<int32_t>(e.above);
   }
-  for (size_t i = 0; i < n; ++i) {
-    const Float4 starts = splat(start[i]), ends = splat(end[i]);
-    for (size_t g = 0; g < groups; ++g) {
-      below[g] -= starts < position[g];
-      above[g] -= ends > position[g];
-    }
+  for (size_t i = 0; i < e.starts; ++i) {
+    const Float4 start = splat(planes.position[i]);
+    for (size_t g = 0; g < groups; ++g) below[g] -= start < position[g];
+  }
+  for (size_t i = e.starts; i < e.starts + e.ends; ++i) {
+    const Float4 end = splat(planes.position[i]);
+    for (size_t g = 0; g < groups; ++g) above[g] -= end > position[g];
   }
   for (size_t g = 0; g < groups; ++g) {
     store4(planes.below + k + 4 * g, to_float(below[g]));
@@ -103,18 +110,18 @@ void count_sides(Candidates::Axis& planes, size_t n, size_t k) {
   }
 }
 
-// How many boxes lie in each exact candidate.
-void count_planar(Candidates::Axis& planes, size_t n) {
-  float flat[kExactAtMost];
-  size_t flats = 0;
-  for (size_t i = 0; i < n; ++i) {
-    flat[flats] = planes.position[i];
-    flats += planes.position[i] == planes.position[n + i];
-  }
-  for (size_t k = 0; k < planes.count; k += 4) {
+// Counts all candidates; `flat` are the positions of the boxes that have no extent along the axis.
+void count_all(const Ends& e, std::span<const float> flat, Candidates::Axis& planes) {
+  for (planes.count = e.starts + e.ends; planes.count % 4 != 0; ++planes.count)
+    planes.position[planes.count] = kInfinite;
+  size_t k = 0;
+  for (; k + 8 <= planes.count; k += 8) count_sides<2>(planes, e, k);
+  if (k < planes.count) count_sides<1>(planes, e, k);
+  planes.has_planar = !flat.empty();
+  for (k = 0; planes.has_planar && k < planes.count; k += 4) {
     const Float4 position = load4(planes.position + k);
     Int4 planar{0, 0, 0, 0};
-    for (size_t i = 0; i < flats; ++i) planar -= splat(flat[i]) == position;
+    for (const float x : flat) planar -= splat(x) == position;
     store4(planes.planar + k, to_float(planar));
   }
 }
@@ -157,14 +164,39 @@ void find_exact_candidates(std::span<const Reference> references, Candidates& ca
   }
   for (int axis = 0; axis < 3; ++axis) {
     Candidates::Axis& planes = candidates.axis[axis];
-    for (planes.count = 2 * n; planes.count % 4 != 0; ++planes.count)
-      planes.position[planes.count] = kInfinite;
-    planes.has_planar = flat[axis] != 0;
-    size_t k = 0;
-    for (; k + 8 <= planes.count; k += 8) count_sides<2>(planes, n, k);
-    if (k < planes.count) count_sides<1>(planes, n, k);
-    if (planes.has_planar) count_planar(planes, n);
+    float flats[kExactAtMost];
+    size_t f = 0;
+    for (size_t i = 0; flat[axis] != 0 && i < n; ++i) {
+      flats[f] = planes.position[i];
+      f += planes.position[i] == planes.position[n + i];
+    }
+    count_all({n, n, 0, 0}, {flats, f}, planes);
   }
+}
+
+bool find_candidates_near(std::span<const Reference> references, int axis, float from, float to,
+                          Candidates& candidates) {
+  Candidates::Axis& planes = candidates.axis[axis];
+  float ends[kExactAtMost], flats[kExactAtMost];
+  Ends e{0, 0, 0, 0};
+  size_t f = 0;
+  for (const Reference& r : references) {
+    if (e.starts == kExactAtMost || e.ends == kExactAtMost) return false;
+    const float start = r.min[axis], end = r.max[axis];
+    e.below += start <= from;
+    e.above += end >= to;
+    planes.position[e.starts] = start;
+    e.starts += (start > from) & (start < to);
+    flats[f] = ends[e.ends] = end;
+    const bool ends_inside = (end > from) & (end < to);
+    e.ends += ends_inside;
+    f += ends_inside & (start == end);
+  }
+  if (f == kExactAtMost) return false;
+  std::copy_n(ends, e.ends, planes.position + e.starts);
+  for (Candidates::Axis& other : candidates.axis) other.count = 0;
+  count_all(e, {flats, f}, planes);
+  return true;
 }
 
 BinLayout make_bins(const Box4& tight, size_t references) {

@@ -89,6 +89,11 @@ Plane best_plane(const Candidates& candidates, const Box& cell, const SahCosts& 
 // which for at most kExactAtMost of them is quicker than sorting.
 void find_exact_candidates(std::span<const Reference> references, Candidates& candidates);
 
+// Only the ends that lie between two positions on one axis, for the neighbourhood of a plane among
+// many references; false when it has too many of them.
+bool find_candidates_near(std::span<const Reference> references, int axis, float from, float to,
+                          Candidates& candidates);
+
 // Planes evenly spaced on each axis between the outermost ends (Hunt, Mark and Stoll 2006; Shevtsov,
 // Soupikov and Kapustin 2007): how many boxes start and end between two of them is counted, for a
 // large node in several pieces whose counts are added.

@@ -12,18 +12,31 @@ void set_component(Vec3& v, int axis, float x) {
   (axis == 0 ? v.x : axis == 1 ? v.y : v.z) = x;
 }
 
-bool is_exact(const BuildContext& context, size_t references) {
-  return references <= std::min(context.settings.binned_above, kExactAtMost);
-}
-
-void find_candidates(const BuildContext& context, std::span<const Reference> references,
-                     Candidates& candidates) {
-  if (is_exact(context, references.size())) return find_exact_candidates(references, candidates);
-  const BinLayout layout = make_bins(bounds_of(references), references.size());
+// How a node's planes are found, and its candidates.
+enum class Planes { exact, binned };
+Planes find_candidates(const BuildContext& context, std::span<const Reference> references, BinLayout& layout,
+                       Candidates& candidates) {
+  if (references.size() <= std::min(context.settings.binned_above, kExactAtMost)) {
+    find_exact_candidates(references, candidates);
+    return Planes::exact;
+  }
+  layout = make_bins(bounds_of(references), references.size());
   BinCounts counts;
   clear(layout, counts);
   count_bins(references, layout, counts);
   find_binned_candidates(layout, counts, references.size(), candidates);
+  return Planes::binned;
+}
+
+// The best plane among the ends of boxes that are no further than a bin from a binned one, if it is better.
+void refine(const SahCosts& costs, std::span<const Reference> references, const BinLayout& layout,
+            const Box& cell, Plane& plane) {
+  const float reach = 1 / layout.scale[plane.axis];
+  Candidates near;
+  if (!find_candidates_near(references, plane.axis, plane.position - reach, plane.position + reach, near))
+    return;
+  const Plane refined = best_plane(near, cell, costs);
+  if (refined.cost < plane.cost) plane = refined;
 }
 
 // Sorts the n references at `first` to the sides of the plane: those below stay there, those above
@@ -52,19 +65,26 @@ void distribute(const BuildContext& context, const Plane& plane, Reference* firs
     cut(context.triangles[r->triangle], *r, plane, *below++, *above++);
 }
 
-// Finds the plane of a node with those references. Planes that cut off empty space come first, as
-// nodes of their own with an empty leaf: `node` and its index `at` become those of the rest. False
-// when the rest is to be a leaf.
+// Finds the plane of a node with those references, and what it puts on its sides. Planes that cut off
+// empty space come first, as nodes of their own with an empty leaf: `node` and its index `at` become
+// those of the rest. False when the rest is to be a leaf.
 bool find_plane(const BuildContext& context, std::span<const Reference> references, Node& node, size_t& at,
-                Subtree& out, Plane& plane) {
+                Subtree& out, Plane& plane, Counts& counts) {
   const size_t n = references.size();
-  if (n <= 1 || node.depth >= context.max_depth) return false;
+  const SahCosts& costs = context.settings.costs;
+  if (n <= 1) return false;
   Candidates candidates;
-  find_candidates(context, references, candidates);
+  BinLayout layout;
+  const Planes planes = find_candidates(context, references, layout, candidates);
   for (; node.depth < context.max_depth; ++node.depth) {
-    plane = best_plane(candidates, node.cell, context.settings.costs);
-    if (!is_cheaper_than_leaf(plane, n, context.settings.costs)) return false;
-    if (!cuts_off_empty_space(plane)) return true;
+    plane = best_plane(candidates, node.cell, costs);
+    if (!cuts_off_empty_space(plane) && planes == Planes::binned && is_cheaper_than_leaf(plane, 2 * n, costs))
+      refine(costs, references, layout, node.cell, plane);
+    if (!is_cheaper_than_leaf(plane, n, costs)) return false;
+    if (!cuts_off_empty_space(plane)) {
+      counts = planes == Planes::exact ? Counts{plane.below, plane.above} : count_sides(references, plane);
+      return is_allowed(node, counts, n);
+    }
     const size_t pair = out.nodes.size();
     out.nodes.resize(pair + 2);
     out.nodes[at] = inner_node(plane, pair);
@@ -83,12 +103,7 @@ void finish(const BuildContext& context, Node node, size_t first, size_t n, size
   const std::span<const Reference> references(scratch.references.data() + first, n);
   Plane plane;
   Counts counts;
-  bool splits = find_plane(context, references, node, at, out, plane);
-  if (splits) {
-    counts = is_exact(context, n) ? Counts{plane.below, plane.above} : count_sides(references, plane);
-    splits = is_allowed(node, counts, n);
-  }
-  if (!splits) {
+  if (!find_plane(context, references, node, at, out, plane, counts)) {
     out.nodes[at] = leaf_node(references, out.references);
     return;
   }
