@@ -10,7 +10,7 @@ namespace vitral {
 
 struct BuildSettings {
   SahCosts costs;
-  size_t binned_above = 32;  // references in a node above which planes are binned; at most kExactAtMost
+  size_t binned_above = 24;  // references in a node above which planes are binned; at most kExactAtMost
   size_t subtree_at_most =
       2048;  // larger nodes are split one by one by all workers, smaller ones are one task
 };
