@@ -9,6 +9,7 @@
 
 #include "kdtree/cut.h"
 #include "kdtree/subtree.h"
+#include "kdtree/upper.h"
 
 #include <algorithm>
 #include <deque>
@@ -20,20 +21,11 @@ namespace {
 
 constexpr size_t kPieceSize = 8192;  // references
 
-// The upper part of the tree: an inner node with two children, or a finished subtree. Until it is
-// decided on, its references are count of them at `first` in the round's buffer.
-struct Upper {
-  Node node;
-  size_t first = 0, count = 0;
-  Box4 tight;
-  double share = 0;  // of the whole work
-  Plane plane{};
-  Upper *below = nullptr, *above = nullptr;
-  Subtree subtree;
-};
-
 // A part of a large node's references, and what is found out about it.
 struct Piece {
+  Piece(Upper* upper_node, size_t first_reference, size_t reference_count)
+      : upper(upper_node), first(first_reference), count(reference_count) {}
+
   Upper* upper;
   size_t first, count;
   BinCounts bins;
@@ -41,6 +33,15 @@ struct Piece {
   size_t below_at = 0, above_at = 0;  // where its references go in the next round's buffer
   Box4 tight_below, tight_above;
 };
+
+// Calls body with the pieces of each node in turn.
+template <class Body>
+void for_each_node(std::vector<Piece>& pieces, const Body& body) {
+  for (size_t i = 0, end; i < pieces.size(); i = end) {
+    for (end = i + 1; end < pieces.size() && pieces[end].upper == pieces[i].upper;) ++end;
+    body(std::span<Piece>(pieces).subspan(i, end - i));
+  }
+}
 
 class Builder {
  public:
@@ -59,8 +60,11 @@ class Builder {
   void split_rounds(Upper& root);
   void finish(Upper& upper);
   void make_leaf(Upper& upper);
-  void find_plane(std::span<Piece*> pieces);
-  bool place(std::span<Piece*> pieces, size_t& next_size);
+  std::vector<Piece> cut_up(const std::vector<Upper*>& round, std::vector<Upper*>& small) const;
+  void bin(Piece& piece) const;
+  void find_plane(std::span<Piece> pieces);
+  std::vector<Upper*> make_children(std::vector<Piece>& pieces);
+  bool place(std::span<Piece> pieces, size_t& next_size);
   void scatter(Piece& piece);
   void advance(double share);
   std::span<const Reference> references_of(const Upper& u) const { return {now_.data() + u.first, u.count}; }
@@ -127,30 +131,36 @@ void Builder::finish(Upper& upper) {
   advance(upper.share);
 }
 
+void Builder::bin(Piece& piece) const {
+  const BinLayout layout = make_bins(piece.upper->tight, piece.upper->count);
+  clear(layout, piece.bins);
+  count_bins(references_of(piece), layout, piece.bins);
+}
+
 // The plane of the node whose pieces, all counted, these are.
-void Builder::find_plane(std::span<Piece*> pieces) {
-  Upper& upper = *pieces[0]->upper;
+void Builder::find_plane(std::span<Piece> pieces) {
+  Upper& upper = *pieces[0].upper;
   const BinLayout layout = make_bins(upper.tight, upper.count);
-  BinCounts& bins = pieces[0]->bins;
-  for (const Piece* piece : pieces.subspan(1)) add_counts(layout, piece->bins, bins);
+  BinCounts& bins = pieces[0].bins;
+  for (const Piece& piece : pieces.subspan(1)) add_counts(layout, piece.bins, bins);
   Candidates candidates;
   find_binned_candidates(layout, bins, upper.count, candidates);
   upper.plane = best_plane(candidates, upper.node.cell, context_.settings.costs);
 }
 
 // Makes the children and gives each piece its places in them; false when the node is not to be split.
-bool Builder::place(std::span<Piece*> pieces, size_t& next_size) {
-  Upper& upper = *pieces[0]->upper;
+bool Builder::place(std::span<Piece> pieces, size_t& next_size) {
+  Upper& upper = *pieces[0].upper;
   Counts total;
-  for (const Piece* piece : pieces) {
-    total.below += piece->sides.below;
-    total.above += piece->sides.above;
+  for (const Piece& piece : pieces) {
+    total.below += piece.sides.below;
+    total.above += piece.sides.above;
   }
   if (!is_cheaper_than_leaf(upper.plane, upper.count, context_.settings.costs) ||
       !is_allowed(upper.node, total, upper.count)) {
     return false;
   }
-  const Children children = make_children(upper.node, upper.plane, total, upper.count);
+  const Children children = vitral::make_children(upper.node, upper.plane, total, upper.count);
   const double share = upper.share / static_cast<double>(total.below + total.above);
   upper.below = &uppers_.emplace_back();
   upper.above = &uppers_.emplace_back();
@@ -161,14 +171,16 @@ bool Builder::place(std::span<Piece*> pieces, size_t& next_size) {
   upper.below->first = next_size, upper.above->first = next_size + total.below;
   next_size += total.below + total.above;
   size_t below_at = upper.below->first, above_at = upper.above->first;
-  for (Piece* piece : pieces) {
-    piece->below_at = below_at, piece->above_at = above_at;
-    below_at += piece->sides.below, above_at += piece->sides.above;
+  for (Piece& piece : pieces) {
+    piece.below_at = below_at, piece.above_at = above_at;
+    below_at += piece.sides.below, above_at += piece.sides.above;
   }
   return true;
 }
 
+// Sorts a piece to the children, if its node has any.
 void Builder::scatter(Piece& piece) {
+  if (!piece.upper->below) return;
   const Plane plane = piece.upper->plane;
   Reference *below = next_.data() + piece.below_at, *above = next_.data() + piece.above_at;
   for (const Reference& r : references_of(piece)) {
@@ -189,103 +201,62 @@ void Builder::scatter(Piece& piece) {
   }
 }
 
+// Sorts out the small nodes, and cuts the references of the others into pieces.
+std::vector<Piece> Builder::cut_up(const std::vector<Upper*>& round, std::vector<Upper*>& small) const {
+  std::vector<Piece> pieces;
+  for (Upper* upper : round) {
+    if (upper->count <= context_.settings.subtree_at_most || upper->node.depth >= context_.max_depth) {
+      small.push_back(upper);
+      continue;
+    }
+    for (size_t at = 0; at < upper->count; at += kPieceSize)
+      pieces.emplace_back(upper, upper->first + at, std::min(kPieceSize, upper->count - at));
+  }
+  return pieces;
+}
+
+// Makes the children of the nodes whose pieces these are, all of them counted. Nodes that are better
+// not split become leaves.
+std::vector<Upper*> Builder::make_children(std::vector<Piece>& pieces) {
+  std::vector<Upper*> children;
+  size_t next_size = 0;
+  for_each_node(pieces, [&](std::span<Piece> of_node) {
+    Upper& upper = *of_node[0].upper;
+    if (!place(of_node, next_size)) return make_leaf(upper);
+    children.insert(children.end(), {upper.below, upper.above});
+  });
+  if (next_.capacity() > 2 * next_size) next_ = ReferenceBuffer();
+  next_.grow(next_size, 0);
+  return children;
+}
+
 void Builder::split_rounds(Upper& root) {
   std::vector<Upper*> round{&root};
   while (!round.empty()) {
-    // Small nodes are finished; large ones are counted in pieces.
+    // Small nodes are finished, large ones binned.
     std::vector<Upper*> small;
-    std::deque<Piece> pieces;
-    std::vector<Piece*> list;
-    for (Upper* upper : round) {
-      if (upper->count <= context_.settings.subtree_at_most || upper->node.depth >= context_.max_depth) {
-        small.push_back(upper);
-        continue;
-      }
-      for (size_t at = 0; at < upper->count; at += kPieceSize) {
-        Piece& piece = pieces.emplace_back();
-        piece.upper = upper;
-        piece.first = upper->first + at;
-        piece.count = std::min(kPieceSize, upper->count - at);
-        list.push_back(&piece);
-      }
-    }
-    executor_(small.size() + list.size(), [&](size_t i) {
-      if (i < small.size()) return finish(*small[i]);
-      Piece& piece = *list[i - small.size()];
-      const BinLayout layout = make_bins(piece.upper->tight, piece.upper->count);
-      clear(layout, piece.bins);
-      count_bins(references_of(piece), layout, piece.bins);
+    std::vector<Piece> pieces = cut_up(round, small);
+    executor_(small.size() + pieces.size(), [&](size_t i) {
+      if (i < small.size())
+        finish(*small[i]);
+      else
+        bin(pieces[i - small.size()]);
     });
 
-    // The planes are chosen, and the pieces counted against them.
-    const auto for_each_node = [&](const auto& body) {
-      for (size_t i = 0, end; i < list.size(); i = end) {
-        for (end = i; end < list.size() && list[end]->upper == list[i]->upper;) ++end;
-        body(std::span<Piece*>(list.data() + i, end - i));
-      }
-    };
-    for_each_node([&](std::span<Piece*> of_node) { find_plane(of_node); });
-    executor_(list.size(), [&](size_t i) {
-      list[i]->sides = count_sides(references_of(*list[i]), list[i]->upper->plane);
+    // The planes are chosen, and the references sorted to the children, which are the next round.
+    for_each_node(pieces, [&](std::span<Piece> of_node) { find_plane(of_node); });
+    executor_(pieces.size(), [&](size_t i) {
+      pieces[i].sides = count_sides(references_of(pieces[i]), pieces[i].upper->plane);
     });
-
-    // The references go to the children, which are the next round.
-    std::vector<Piece*> split;
-    size_t next_size = 0;
-    round.clear();
-    for_each_node([&](std::span<Piece*> of_node) {
-      Upper& upper = *of_node[0]->upper;
-      if (!place(of_node, next_size)) return make_leaf(upper);
-      round.insert(round.end(), {upper.below, upper.above});
-      split.insert(split.end(), of_node.begin(), of_node.end());
-    });
-    if (next_.capacity() > 2 * next_size) next_ = ReferenceBuffer();
-    next_.grow(next_size, 0);
-    executor_(split.size(), [&](size_t i) { scatter(*split[i]); });
-    for (const Piece* piece : split) {
-      extend(piece->upper->below->tight, piece->tight_below.min, piece->tight_below.max);
-      extend(piece->upper->above->tight, piece->tight_above.min, piece->tight_above.max);
+    round = make_children(pieces);
+    executor_(pieces.size(), [&](size_t i) { scatter(pieces[i]); });
+    for (const Piece& piece : pieces) {
+      if (!piece.upper->below) continue;
+      extend(piece.upper->below->tight, piece.tight_below.min, piece.tight_below.max);
+      extend(piece.upper->above->tight, piece.tight_above.min, piece.tight_above.max);
     }
     std::swap(now_, next_);
   }
-}
-
-// A finished subtree and where it lands in the tree.
-struct Landing {
-  Subtree* subtree;
-  size_t root, nodes, references;
-};
-
-// Lays out a node and all below it, depth first.
-void lay_out(Upper& upper, size_t at, KdTree& tree, size_t& nodes, size_t& references,
-             std::vector<Landing>& landings) {
-  if (upper.below) {
-    const size_t pair = nodes;
-    nodes += 2;
-    tree.nodes.resize(std::max(tree.nodes.size(), pair + 2));
-    tree.nodes[at] = inner_node(upper.plane, pair);
-    lay_out(*upper.below, pair, tree, nodes, references, landings);
-    lay_out(*upper.above, pair + 1, tree, nodes, references, landings);
-    return;
-  }
-  landings.push_back({&upper.subtree, at, nodes, references});
-  nodes += upper.subtree.nodes.size() - 1;
-  references += upper.subtree.references.size();
-}
-
-// Copies a subtree into its place and frees it.
-void land(const Landing& landing, KdTree& tree) {
-  const uint32_t node_shift = static_cast<uint32_t>(landing.nodes) - 1;  // nodes[1] lands at landing.nodes
-  const uint32_t reference_shift = static_cast<uint32_t>(landing.references);
-  const std::vector<KdNode>& nodes = landing.subtree->nodes;
-  for (size_t i = 0; i < nodes.size(); ++i) {
-    KdNode n = nodes[i];
-    n.axis_and_index += (is_leaf(n) ? reference_shift : node_shift) << 2;
-    tree.nodes[i == 0 ? landing.root : landing.nodes + i - 1] = n;
-  }
-  std::copy(landing.subtree->references.begin(), landing.subtree->references.end(),
-            tree.references.begin() + static_cast<std::ptrdiff_t>(landing.references));
-  *landing.subtree = Subtree{};
 }
 
 int depth_limit(size_t triangles) {
@@ -306,13 +277,7 @@ KdTree build_kdtree(const std::vector<KdTriangle>& triangles, const std::vector<
 
   KdTree tree;
   tree.bounds = root.node.cell;
-  tree.nodes.resize(2, KdNode{0, 3});
-  std::vector<Landing> landings;
-  size_t nodes = 2, references = 0;
-  lay_out(root, 0, tree, nodes, references, landings);
-  tree.nodes.resize(nodes);
-  tree.references.resize(references);
-  executor(landings.size(), [&](size_t i) { land(landings[i], tree); });
+  join(root, executor, tree);
   if (on_progress) on_progress(1);
   return tree;
 }
