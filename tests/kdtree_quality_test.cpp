@@ -1,5 +1,6 @@
 // The tree that is built: no part of a triangle is lost, and its planes are about as good as there are.
 #include "kdtree/build.h"
+#include "kdtree/cut.h"
 #include "kdtree_support.h"
 
 #include <gtest/gtest.h>
@@ -41,6 +42,40 @@ Polygon polygon_of(const KdTriangle& t) {
   for (const auto& c : t.corner)
     p.push_back({static_cast<double>(c[0]), static_cast<double>(c[1]), static_cast<double>(c[2])});
   return p;
+}
+
+// The bounds of a part are those of the exact one, rounded outwards and no further than need be.
+TEST(KdTreeQuality, CutsTightly) {
+  Random random(27);
+  int straddling = 0;
+  for (int i = 0; i < 3000; ++i) {
+    Triangles list;
+    add_triangle(list, random.in_box(-1, 1), random.in_box(-1, 1), random.in_box(-1, 1));
+    Box box;
+    for (size_t k = 0; k < 3; ++k) extend(box, corner_of(list[0], k));
+    const Reference whole{{box.min.x, box.min.y, box.min.z}, 7, {box.max.x, box.max.y, box.max.z}, 0};
+    const Plane plane{0, random.between(-1, 1), i % 3, PlanarSide::below, 1, 1};
+    if (!(component(box.min, plane.axis) < plane.position && component(box.max, plane.axis) > plane.position))
+      continue;
+    ++straddling;
+    Reference parts[2];
+    cut(list[0], whole, plane, parts[0], parts[1]);
+    for (const bool below : {true, false}) {
+      const Reference& part = parts[below ? 0 : 1];
+      EXPECT_EQ(part.triangle, 7u);
+      const Polygon exact = clip(polygon_of(list[0]), static_cast<size_t>(plane.axis),
+                                 static_cast<double>(plane.position), below);
+      for (size_t axis = 0; axis < 3; ++axis) {
+        double lo = 1e30, hi = -1e30;
+        for (const auto& p : exact) lo = std::min(lo, p[axis]), hi = std::max(hi, p[axis]);
+        EXPECT_LE(static_cast<double>(part.min[axis]), lo + 1e-12);
+        EXPECT_GE(static_cast<double>(part.max[axis]), hi - 1e-12);
+        EXPECT_NEAR(static_cast<double>(part.min[axis]), lo, 0x1p-18);
+        EXPECT_NEAR(static_cast<double>(part.max[axis]), hi, 0x1p-18);
+      }
+    }
+  }
+  EXPECT_GT(straddling, 1000);
 }
 
 bool contains(const Box& cell, double grown, const std::array<double, 3>& p) {

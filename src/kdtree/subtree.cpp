@@ -78,6 +78,7 @@ bool find_plane(const BuildContext& context, std::span<const Reference> referenc
   const Planes planes = find_candidates(context, references, layout, candidates);
   for (; node.depth < context.max_depth; ++node.depth) {
     plane = best_plane(candidates, node.cell, costs);
+    // Bins make planes look worse than the ends nearby are, though hardly twice.
     if (!cuts_off_empty_space(plane) && planes == Planes::binned && is_cheaper_than_leaf(plane, 2 * n, costs))
       refine(costs, references, layout, node.cell, plane);
     if (!is_cheaper_than_leaf(plane, n, costs)) return false;
