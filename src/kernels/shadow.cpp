@@ -178,7 +178,7 @@ enum class Found { casters, darkness, too_many };
 struct Budget {
   int casters, leaves;
 };
-inline constexpr Budget kBudgets[3] = {{224, 400}, {96, 64}, {160, 128}};
+inline constexpr Budget kBudgets[3] = {{96, 96}, {96, 64}, {160, 128}};
 
 // Collects the casters that a sweep can meet: the cells that the box of origins, grown by the slack,
 // passes through on its way along the direction, each within a span [t0, t1] of the way.
