@@ -50,7 +50,7 @@ static inline Box to_box(const Box4& b) {
 Box4 bounds_of(std::span<const Reference> references);
 
 struct SahCosts {
-  float traversal = 3.0f;
+  float traversal = 5.0f;
   float intersection = 1.5f;
   float empty_bonus = 0.9f;  // factor on the cost of a plane that cuts off empty space
 };

@@ -73,24 +73,12 @@ void make_frames(const PointPacket& points, Frames& frames) {
   }
 }
 
-}  // namespace
-
-void ambient_occlusion(const KdView& tree, const PointPacket& points, const AmbientSettings& settings,
-                       uint32_t* free_rays) {
+// The rays of one block, given what they can meet.
+void trace_block(const KdView& tree, const PointPacket& points, const Frames& frames,
+                 const AmbientSettings& settings, const Candidates& candidates, uint32_t* free_rays) {
   const int n = settings.strata;
-  Frames frames;
-  make_frames(points, frames);
-  Candidates candidates;
-  candidates.node = 0;
-  candidates.count = kMaxCandidates + 1;
-  if (settings.shortcuts == Shortcuts::taken) {
-    // Collecting must not take longer than what it saves.
-    const int most_leaves = 64 + 16 * n * n;
-    find_candidates(tree, points, frames, settings.distance, most_leaves, candidates);
-  }
   for (int g = 0; g < kPacketSize; g += kLanes) store(free_rays + g, Uint(static_cast<uint32_t>(n * n)));
   if (candidates.count == 0) return;
-
   RayPacket rays;
   set_origins(points, rays);
   rays.tmin = 0;
@@ -112,9 +100,49 @@ void ambient_occlusion(const KdView& tree, const PointPacket& points, const Ambi
   }
 }
 
+// Some blocks with one pool of triangles; where that grows too large, a quarter of them at a time. When
+// the blocks are small beside the rays, a quarter of them has hardly less within its reach, and the walk
+// is left to find it.
+void trace_group(const KdView& tree, const PointPacket* const* points, int count,
+                 const AmbientSettings& settings, FreeRays* out) {
+  const bool shortcuts = settings.shortcuts == Shortcuts::taken;
+  const Reach reach = reach_of(tree, points, count, settings.distance);
+  // Collecting must not take longer than what it saves.
+  const int most_leaves = count * (64 + 16 * settings.strata * settings.strata);
+  TrianglePool pool;
+  const bool pooled = shortcuts && collect(tree, reach, most_leaves, pool) == Collected::all;
+  if (!pooled && shortcuts && count > 1 && largest_component(extent(reach.start)) > settings.distance) {
+    const int part = count > 4 ? 4 : 1;
+    for (int i = 0; i < count; i += part) {
+      trace_group(tree, points + i, count - i < part ? count - i : part, settings, out + i);
+    }
+    return;
+  }
+  for (int i = 0; i < count; ++i) {
+    Frames frames;
+    make_frames(*points[i], frames);
+    Candidates candidates;
+    if (pooled)
+      choose_candidates(tree, pool, *points[i], frames, settings.distance, candidates);
+    else
+      walk_instead(tree, *points[i], settings.distance, candidates);
+    trace_block(tree, *points[i], frames, settings, candidates, out[i].count);
+  }
+}
+
+}  // namespace
+
 void ambient_blocks(const KdView& tree, const PointPacket* const* points, int count,
                     const AmbientSettings& settings, FreeRays* out) {
-  for (int i = 0; i < count; ++i) ambient_occlusion(tree, *points[i], settings, out[i].count);
+  if (count > 0) trace_group(tree, points, count, settings, out);
+}
+
+void ambient_occlusion(const KdView& tree, const PointPacket& points, const AmbientSettings& settings,
+                       uint32_t* free_rays) {
+  const PointPacket* const packet = &points;
+  FreeRays free;
+  trace_group(tree, &packet, 1, settings, &free);
+  for (int lane = 0; lane < kPacketSize; ++lane) free_rays[lane] = free.count[lane];
 }
 
 }  // namespace VITRAL_ISA

@@ -10,21 +10,9 @@ namespace {
 inline Vec3T<Float> splat(const Vec3& v) {
   return {Float(v.x), Float(v.y), Float(v.z)};
 }
-inline Vec3T<Float> absolute_of(const Vec3T<Float>& v) {
-  return {absolute(v.x), absolute(v.y), absolute(v.z)};
-}
 inline void set_component(Vec3& v, int axis, float x) {
   (axis == 0 ? v.x : axis == 1 ? v.y : v.z) = x;
 }
-
-// What the rays of a block can reach: within the box, above the plane.
-struct Reach {
-  Box box;          // of the points, grown by how far the rays go and by the traversal's slack
-  float magnitude;  // largest coordinate of the points
-  float distance;
-  Vec3 normal;  // of the plane: the points' mean
-  float floor;  // what lies lower than this along it is below the planes of all points
-};
 
 // Rounding moves a point of a triangle, and a point of a ray, by less than 2^-20 of the largest
 // coordinates that go in. Directions are unit within 2^-20, and their polynomials off by 2^-19.
@@ -33,44 +21,50 @@ inline F margin_of(const F& magnitude, float distance) {
   return magnitude * F(1.0f / 1048576) + F(distance * (1.0f / 262144));
 }
 
-Reach reach_of(const KdView& tree, const PointPacket& points, float distance) {
+}  // namespace
+
+Reach reach_of(const KdView& tree, const PointPacket* const* points, int count, float distance) {
   Vec3T<Float> low = splat({kInfinity, kInfinity, kInfinity}), high = -low, sum = splat({0, 0, 0});
   Float least_offset = Float(kInfinity), most_offset = Float(0.0f);
-  for (int g = 0; g < kPacketSize; g += kLanes) {
-    const Mask live = group_mask(points.live, g);
-    const Vec3T<Float> p = load3(points.px, points.py, points.pz, g),
-                       n = load3(points.gx, points.gy, points.gz, g);
-    low = {least(select(live, p.x, low.x), low.x), least(select(live, p.y, low.y), low.y),
-           least(select(live, p.z, low.z), low.z)};
-    high = {greatest(select(live, p.x, high.x), high.x), greatest(select(live, p.y, high.y), high.y),
-            greatest(select(live, p.z, high.z), high.z)};
-    sum = sum + Vec3T<Float>{select(live, n.x, Float(0.0f)), select(live, n.y, Float(0.0f)),
-                             select(live, n.z, Float(0.0f))};
-    const Float offset = load(points.offset + g);
-    least_offset = least(select(live, offset, least_offset), least_offset);
-    most_offset = greatest(select(live, offset, most_offset), most_offset);
+  const Float zero = Float(0.0f);
+  for (int i = 0; i < count; ++i) {
+    const PointPacket& p = *points[i];
+    for (int g = 0; g < kPacketSize; g += kLanes) {
+      const Mask live = group_mask(p.live, g);
+      const Vec3T<Float> at = load3(p.px, p.py, p.pz, g), n = load3(p.gx, p.gy, p.gz, g);
+      low = {least(select(live, at.x, low.x), low.x), least(select(live, at.y, low.y), low.y),
+             least(select(live, at.z, low.z), low.z)};
+      high = {greatest(select(live, at.x, high.x), high.x), greatest(select(live, at.y, high.y), high.y),
+              greatest(select(live, at.z, high.z), high.z)};
+      sum = sum + Vec3T<Float>{select(live, n.x, zero), select(live, n.y, zero), select(live, n.z, zero)};
+      const Float offset = load(p.offset + g);
+      least_offset = least(select(live, offset, least_offset), least_offset);
+      most_offset = greatest(select(live, offset, most_offset), most_offset);
+    }
   }
   Reach reach;
-  const Box box{{least_lane(low.x), least_lane(low.y), least_lane(low.z)},
-                {greatest_lane(high.x), greatest_lane(high.y), greatest_lane(high.z)}};
-  const float offset = greatest_lane(most_offset);
-  const float far = distance * 1.00001f + offset;
-  reach.magnitude = magnitude(box);
-  const float grow = far + traversal_slack(vitral::greatest(tree.magnitude, reach.magnitude + far));
-  reach.box = {box.min - Vec3{grow, grow, grow}, box.max + Vec3{grow, grow, grow}};
+  reach.start = {{least_lane(low.x), least_lane(low.y), least_lane(low.z)},
+                 {greatest_lane(high.x), greatest_lane(high.y), greatest_lane(high.z)}};
   reach.distance = distance;
+  reach.magnitude = magnitude(reach.start);
+  const float far = distance * 1.00001f + greatest_lane(most_offset);
+  const float grow = far + traversal_slack(vitral::greatest(tree.magnitude, reach.magnitude + far));
+  reach.box = {reach.start.min - Vec3{grow, grow, grow}, reach.start.max + Vec3{grow, grow, grow}};
 
   // Any unit vector would do; near the mean the planes of the points differ least from the common one.
   const Vec3 mean{sum_of_lanes(sum.x), sum_of_lanes(sum.y), sum_of_lanes(sum.z)};
-  const float length_squared = dot(mean, mean);
-  reach.normal = length_squared > 1e-6f ? mean * (1.0f / vitral::square_root(length_squared)) : Vec3{0, 0, 1};
-  Float lowest = Float(kInfinity), deviation = Float(0.0f);
-  for (int g = 0; g < kPacketSize; g += kLanes) {
-    const Mask live = group_mask(points.live, g);
-    const Float height = dot(load3(points.px, points.py, points.pz, g), splat(reach.normal));
-    lowest = least(select(live, height, lowest), lowest);
-    const Vec3T<Float> d = load3(points.gx, points.gy, points.gz, g) - splat(reach.normal);
-    deviation = greatest(select(live, dot(d, d), deviation), deviation);
+  const float squared = dot(mean, mean);
+  reach.normal = squared > 1e-6f ? mean * (1.0f / vitral::square_root(squared)) : Vec3{0, 0, 1};
+  Float lowest = Float(kInfinity), deviation = zero;
+  for (int i = 0; i < count; ++i) {
+    const PointPacket& p = *points[i];
+    for (int g = 0; g < kPacketSize; g += kLanes) {
+      const Mask live = group_mask(p.live, g);
+      const Float height = dot(load3(p.px, p.py, p.pz, g), splat(reach.normal));
+      lowest = least(select(live, height, lowest), lowest);
+      const Vec3T<Float> d = load3(p.gx, p.gy, p.gz, g) - splat(reach.normal);
+      deviation = greatest(select(live, dot(d, d), deviation), deviation);
+    }
   }
   // What is hit is within `far` of its point, where the planes deviate by no more than this.
   const float tilt = vitral::square_root(greatest_lane(deviation)) * 1.00001f * far;
@@ -79,10 +73,34 @@ Reach reach_of(const KdView& tree, const PointPacket& points, float distance) {
   return reach;
 }
 
+namespace {
+
 // --- collecting ------------------------------------------------------------------------------------
 
-// Up to kLanes triangles: those that overlap the box and rise above the floor are added.
-void add(const KdView& tree, const Reach& reach, const uint32_t* ids, int count, Candidates& out) {
+struct CornerLanes {
+  Vec3T<Float> a, b, c;
+};
+
+// The triangles that overlap the box and rise above the floor.
+Mask within(const CornerLanes& t, const Reach& reach) {
+  const Box& box = reach.box;
+  const auto overlap = [](Float x, Float y, Float z, float low, float high) {
+    return both(greatest_of(x, y, z) >= Float(low), least_of(x, y, z) <= Float(high));
+  };
+  Mask wanted = overlap(t.a.x, t.b.x, t.c.x, box.min.x, box.max.x);
+  wanted = both(wanted, overlap(t.a.y, t.b.y, t.c.y, box.min.y, box.max.y));
+  wanted = both(wanted, overlap(t.a.z, t.b.z, t.c.z, box.min.z, box.max.z));
+  const Vec3T<Float> n = splat(reach.normal);
+  const Float height = greatest_of(dot(n, t.a), dot(n, t.b), dot(n, t.c));
+  // What rounding does to the height, for any unit normal.
+  const Float size = greatest_of(greatest_of(absolute(t.a.x), absolute(t.a.y), absolute(t.a.z)),
+                                 greatest_of(absolute(t.b.x), absolute(t.b.y), absolute(t.b.z)),
+                                 greatest_of(absolute(t.c.x), absolute(t.c.y), absolute(t.c.z)));
+  return both(wanted, invert(height < Float(reach.floor) - size * Float(1.0f / 262144)));
+}
+
+// Adds those of up to kLanes triangles that are within reach.
+void add(const KdView& tree, const Reach& reach, const uint32_t* ids, int count, TrianglePool& out) {
   alignas(64) float corner[9][kLanes];
   alignas(64) uint32_t id[kLanes];
   for (int i = 0; i < kLanes; ++i) {
@@ -90,22 +108,12 @@ void add(const KdView& tree, const Reach& reach, const uint32_t* ids, int count,
     const float* c = tree.triangles[id[i]].corner[0];
     for (int k = 0; k < 9; ++k) corner[k][i] = c[k];
   }
-  const Vec3T<Float> a{load(corner[0]), load(corner[1]), load(corner[2])};
-  const Vec3T<Float> b{load(corner[3]), load(corner[4]), load(corner[5])};
-  const Vec3T<Float> c{load(corner[6]), load(corner[7]), load(corner[8])};
-  const Box& box = reach.box;
-  const auto overlap = [](Float x, Float y, Float z, float low, float high) {
-    return both(greatest_of(x, y, z) >= Float(low), least_of(x, y, z) <= Float(high));
-  };
-  Mask wanted =
-      both(overlap(a.x, b.x, c.x, box.min.x, box.max.x), overlap(a.y, b.y, c.y, box.min.y, box.max.y));
-  wanted = both(wanted, overlap(a.z, b.z, c.z, box.min.z, box.max.z));
-  const Vec3T<Float> n = splat(reach.normal), m = absolute_of(n);
-  const Float height = greatest_of(dot(n, a), dot(n, b), dot(n, c));
-  const Float size = greatest_of(dot(absolute_of(a), m), dot(absolute_of(b), m), dot(absolute_of(c), m));
-  wanted = both(wanted, invert(height < Float(reach.floor) - size * Float(1.0f / 1048576)));
-  wanted = both(wanted, mask_of_bits((1ull << count) - 1));
-  compress(out.triangle + out.count, load(id), wanted);
+  const CornerLanes t{{load(corner[0]), load(corner[1]), load(corner[2])},
+                      {load(corner[3]), load(corner[4]), load(corner[5])},
+                      {load(corner[6]), load(corner[7]), load(corner[8])}};
+  const Mask wanted = both(within(t, reach), mask_of_bits((1ull << count) - 1));
+  for (int k = 0; k < 9; ++k) compress(out.corner[k] + out.count, load(corner[k]), wanted);
+  compress(out.id + out.count, load(id), wanted);
   out.count += __builtin_popcount(bits(wanted));
 }
 
@@ -121,9 +129,23 @@ bool rises(const Box& cell, const Reach& reach) {
   return !(height < reach.floor - size * (1.0f / 1048576));
 }
 
-// All leaves that the box overlaps, but for those below the floor.
-void collect(const KdView& tree, const Reach& reach, int most_leaves, Candidates& out) {
-  constexpr int kSeen = 256;  // triangles met lately, so that few are taken twice
+// The deepest node that holds everything in the box.
+uint32_t entry_node(const KdView& tree, const Box& box) {
+  uint32_t node = 0;
+  while (!is_leaf(tree.nodes[node])) {
+    const KdNode& n = tree.nodes[node];
+    const bool below = component(box.min, axis(n)) <= split(n),
+               above = component(box.max, axis(n)) >= split(n);
+    if (below && above) break;
+    node = child(n) + (above ? 1u : 0u);
+  }
+  return node;
+}
+
+}  // namespace
+
+Collected collect(const KdView& tree, const Reach& reach, int most_leaves, TrianglePool& out) {
+  constexpr int kSeen = 1024;  // triangles met lately, so that few are taken twice
   uint32_t seen[kSeen];
   for (int i = 0; i < kSeen; ++i) seen[i] = kNoTriangle;
   uint32_t ids[kLanes];
@@ -133,8 +155,9 @@ void collect(const KdView& tree, const Reach& reach, int most_leaves, Candidates
     uint32_t node;
   } stack[kMaxTreeDepth];
   const float slack = traversal_slack(vitral::greatest(tree.magnitude, reach.magnitude + reach.distance));
-  uint32_t node = out.node;
+  uint32_t node = entry_node(tree, reach.box);
   Box cell = reach.box;
+  out.count = 0;
   for (;;) {
     const KdNode& n = tree.nodes[node];
     if (!is_leaf(n)) {
@@ -155,8 +178,8 @@ void collect(const KdView& tree, const Reach& reach, int most_leaves, Candidates
       }
       if (rises(cell, reach)) continue;
     } else {
-      if (++leaves > most_leaves) out.count = kMaxCandidates + 1;
-      for (uint32_t i = 0; i < count(n) && out.count <= kMaxCandidates; ++i) {
+      if (++leaves > most_leaves) return Collected::too_many;
+      for (uint32_t i = 0; i < count(n); ++i) {
         const uint32_t id = tree.references[first_reference(n) + i];
         if (seen[id % kSeen] == id) continue;
         seen[id % kSeen] = id;
@@ -165,15 +188,18 @@ void collect(const KdView& tree, const Reach& reach, int most_leaves, Candidates
         if (pending < kLanes) continue;
         add(tree, reach, ids, pending, out);
         pending = 0;
+        if (out.count > kMaxPool - kLanes) return Collected::too_many;
       }
-      if (out.count > kMaxCandidates) return;
     }
     if (waiting == 0) break;
     --waiting;
     node = stack[waiting].node, cell = stack[waiting].cell;
   }
   if (pending > 0) add(tree, reach, ids, pending, out);
+  return Collected::all;
 }
+
+namespace {
 
 // --- classifying -----------------------------------------------------------------------------------
 
@@ -244,24 +270,24 @@ void classify(const KdTriangle& t, const PointPacket& points, const Frames& fram
 
 }  // namespace
 
-void find_candidates(const KdView& tree, const PointPacket& points, const Frames& frames, float distance,
-                     int most_leaves, Candidates& out) {
-  const Reach reach = reach_of(tree, points, distance);
-  const Box& box = reach.box;
-
-  // Down to where the box lies on both sides of the plane: nothing outside this node can be met.
-  uint32_t node = 0;
-  while (!is_leaf(tree.nodes[node])) {
-    const KdNode& n = tree.nodes[node];
-    const bool below = component(box.min, axis(n)) <= split(n),
-               above = component(box.max, axis(n)) >= split(n);
-    if (below && above) break;
-    node = child(n) + (above ? 1u : 0u);
-  }
-  out.node = node;
+void choose_candidates(const KdView& tree, const TrianglePool& pool, const PointPacket& points,
+                       const Frames& frames, float distance, Candidates& out) {
+  const PointPacket* const packet = &points;
+  const Reach reach = reach_of(tree, &packet, 1, distance);
+  out.node = entry_node(tree, reach.box);
   out.count = 0;
-  collect(tree, reach, most_leaves, out);
-  if (out.count > kMaxCandidates) return;
+  for (int i = 0; i < pool.count; i += kLanes) {
+    const CornerLanes t{{load(pool.corner[0] + i), load(pool.corner[1] + i), load(pool.corner[2] + i)},
+                        {load(pool.corner[3] + i), load(pool.corner[4] + i), load(pool.corner[5] + i)},
+                        {load(pool.corner[6] + i), load(pool.corner[7] + i), load(pool.corner[8] + i)}};
+    const int left = pool.count - i;
+    const Mask filled = mask_of_bits(left >= kLanes ? ~0ull : (1ull << left) - 1);
+    const Mask wanted = both(within(t, reach), filled);
+    if (!any(wanted)) continue;
+    compress(out.triangle + out.count, load(pool.id + i), wanted);
+    out.count += __builtin_popcount(bits(wanted));
+    if (out.count > kMaxCandidates) return;
+  }
 
   // Those that no point can see are dropped.
   int kept = 0;
@@ -271,6 +297,12 @@ void find_candidates(const KdView& tree, const PointPacket& points, const Frames
     if (out.height[0][kept] != 0) ++kept;
   }
   out.count = kept;
+}
+
+void walk_instead(const KdView& tree, const PointPacket& points, float distance, Candidates& out) {
+  const PointPacket* const packet = &points;
+  out.node = entry_node(tree, reach_of(tree, &packet, 1, distance).box);
+  out.count = kMaxCandidates + 1;
 }
 
 }  // namespace VITRAL_ISA

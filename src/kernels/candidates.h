@@ -34,11 +34,36 @@ struct Candidates {
   uint64_t quadrant[kQuadrants][kMaxCandidates];  // or there
 };
 
-// Opaque triangles that rays of length `distance` may meet, from the live points raised by their
-// offsets along their geometric normals, going nowhere below the planes through them. Gives up, which
-// reads as too many, after `most_leaves` leaves.
-void find_candidates(const KdView& tree, const PointPacket& points, const Frames& frames, float distance,
-                     int most_leaves, Candidates& out);
+// What the rays of some blocks can reach: within the box, above the plane.
+struct Reach {
+  Box start;        // of the points
+  Box box;          // grown by how far the rays go and by the traversal's slack
+  float magnitude;  // largest coordinate of the points
+  float distance;   // how far the rays go
+  Vec3 normal;      // of the plane: the points' mean
+  float floor;      // what lies lower than this along it is below the planes of all points
+};
+Reach reach_of(const KdView& tree, const PointPacket* const* points, int count, float distance);
+
+// Opaque triangles within the reach of some blocks, side by side.
+inline constexpr int kMaxPool = 4096;
+struct alignas(64) TrianglePool {
+  float corner[9][kMaxPool + 16];
+  uint32_t id[kMaxPool + 16];
+  int count;
+};
+
+// Gives up when there are too many, or after `most_leaves` leaves.
+enum class Collected { all, too_many };
+Collected collect(const KdView& tree, const Reach& reach, int most_leaves, TrianglePool& out);
+
+// Those of the pool that rays of length `distance` may meet, from the live points raised by their offsets
+// along their geometric normals, going nowhere below the planes through them.
+void choose_candidates(const KdView& tree, const TrianglePool& pool, const PointPacket& points,
+                       const Frames& frames, float distance, Candidates& out);
+
+// Leaves it to the walk.
+void walk_instead(const KdView& tree, const PointPacket& points, float distance, Candidates& out);
 
 // In trace.cpp: the any-hit walk below a node.
 uint64_t trace_any_from(const KdView& tree, uint32_t node, const RayPacket& rays, GlassRule glass);
