@@ -45,6 +45,7 @@ Reach reach_of(const KdView& tree, const PointPacket* const* points, int count, 
   Reach reach;
   reach.start = {{least_lane(low.x), least_lane(low.y), least_lane(low.z)},
                  {greatest_lane(high.x), greatest_lane(high.y), greatest_lane(high.z)}};
+  reach.radius = 0.50001f * length(extent(reach.start)) + greatest_lane(most_offset);
   reach.distance = distance;
   reach.magnitude = magnitude(reach.start);
   const float far = distance * 1.00001f + greatest_lane(most_offset);
@@ -66,10 +67,10 @@ Reach reach_of(const KdView& tree, const PointPacket* const* points, int count, 
       deviation = greatest(select(live, dot(d, d), deviation), deviation);
     }
   }
-  // What is hit is within `far` of its point, where the planes deviate by no more than this.
-  const float tilt = vitral::square_root(greatest_lane(deviation)) * 1.00001f * far;
+  reach.far = far;
+  reach.tilt = vitral::square_root(greatest_lane(deviation)) * 1.00001f;
   reach.floor =
-      least_lane(lowest) + least_lane(least_offset) - tilt - 3 * margin_of(reach.magnitude + far, distance);
+      least_lane(lowest) + least_lane(least_offset) - 3 * margin_of(reach.magnitude + far, distance);
   return reach;
 }
 
@@ -96,7 +97,13 @@ Mask within(const CornerLanes& t, const Reach& reach) {
   const Float size = greatest_of(greatest_of(absolute(t.a.x), absolute(t.a.y), absolute(t.a.z)),
                                  greatest_of(absolute(t.b.x), absolute(t.b.y), absolute(t.b.z)),
                                  greatest_of(absolute(t.c.x), absolute(t.c.y), absolute(t.c.z)));
-  return both(wanted, invert(height < Float(reach.floor) - size * Float(1.0f / 262144)));
+  // How far the triangle is at most from any point.
+  const Vec3T<Float> middle = splat((box.min + box.max) * 0.5f);
+  const Vec3T<Float> da = t.a - middle, db = t.b - middle, dc = t.c - middle;
+  const Float away =
+      square_root(greatest_of(dot(da, da), dot(db, db), dot(dc, dc))) * Float(1.00001f) + Float(reach.radius);
+  const Float floor = Float(reach.floor) - least(away, Float(reach.far)) * Float(reach.tilt);
+  return both(wanted, invert(height < floor - size * Float(1.0f / 262144)));
 }
 
 // Adds those of up to kLanes triangles that are within reach.
@@ -126,7 +133,7 @@ bool rises(const Box& cell, const Reach& reach) {
     height += vitral::greatest(low, high);
     size += vitral::greatest(vitral::absolute(low), vitral::absolute(high));
   }
-  return !(height < reach.floor - size * (1.0f / 1048576));
+  return !(height < reach.floor - reach.tilt * reach.far - size * (1.0f / 1048576));
 }
 
 // The deepest node that holds everything in the box.

@@ -16,7 +16,7 @@
 namespace vitral {
 namespace VITRAL_ISA {
 
-inline constexpr int kMaxCandidates = 256;
+inline constexpr int kMaxCandidates = 1024;
 inline constexpr int kHeights = 4;    // d . n at least sqrt(h / 4)
 inline constexpr int kQuadrants = 4;  // signs of d . t and d . b: ++ -+ -- +-
 
@@ -39,9 +39,12 @@ struct Reach {
   Box start;        // of the points
   Box box;          // grown by how far the rays go and by the traversal's slack
   float magnitude;  // largest coordinate of the points
+  float radius;     // half the diagonal of `start`
   float distance;   // how far the rays go
-  Vec3 normal;      // of the plane: the points' mean
-  float floor;      // what lies lower than this along it is below the planes of all points
+  float far;        // and what they hit is from the points
+  Vec3 normal;      // the points' mean: from its plane no point's differs by more than `tilt` per length
+  float tilt;
+  float floor;  // lower than this along the normal, less the tilt, is below the planes of all points
 };
 Reach reach_of(const KdView& tree, const PointPacket* const* points, int count, float distance);
 
