@@ -174,8 +174,10 @@ uint64_t walk_octant(const KdView& tree, const RayPacket& rays, const Derived& d
     }
 
     const KdNode& leaf = tree.nodes[node];
+    const uint32_t* ids = tree.references + first_reference(leaf);
+    for (uint32_t i = 1; i < count(leaf); ++i) __builtin_prefetch(&tree.triangles[ids[i]]);
     for (uint32_t i = 0; i < count(leaf) && lanes != 0; ++i) {
-      const uint32_t id = tree.references[first_reference(leaf) + i];
+      const uint32_t id = ids[i];
       if (glass == GlassRule::passes && (tree.triangles[id].flags & kGlassTriangle)) continue;
       const uint64_t here = same_axis
                                 ? test_triangle<query, true>(tree, rays, d.shears, viewer, lanes, id, hits)
