@@ -74,7 +74,29 @@ PointPacket point_on(Random& random, const std::vector<KdTriangle>& triangles,
     p.nx[lane] = n.x, p.ny[lane] = n.y, p.nz[lane] = n.z;
     p.offset[lane] =
         ray_offset(greatest(largest_component(a), greatest(largest_component(b), largest_component(c))));
+    if (random.below(8) == 0) p.offset[lane] = 0;
     p.key[lane] = random.bits();
+  }
+  return p;
+}
+
+// Points from which the light is seen exactly past an edge of some triangle, or through a corner, as far as
+// that can be said in float.
+PointPacket point_behind_edges(Random& random, const std::vector<KdTriangle>& triangles, const Vec3& to_light,
+                               float scale) {
+  PointPacket p;
+  p.live = ~0ull;
+  const uint32_t first = random.below(static_cast<uint32_t>(triangles.size()));
+  for (int lane = 0; lane < kPacketSize; ++lane) {
+    const KdTriangle& t = triangles[(first + random.below(3)) % triangles.size()];
+    const size_t k = random.below(3);
+    const Vec3 a = corner_of(t, k), b = corner_of(t, (k + 1) % 3);
+    const Vec3 edge = a + (b - a) * (random.below(3) ? random.unit() : 0.0f);
+    const Vec3 x = edge - to_light * (random.between(0.01f, 1) * scale);
+    p.px[lane] = x.x, p.py[lane] = x.y, p.pz[lane] = x.z;
+    p.gx[lane] = p.nx[lane] = to_light.x, p.gy[lane] = p.ny[lane] = to_light.y;
+    p.gz[lane] = p.nz[lane] = to_light.z;
+    p.offset[lane] = 0;
   }
   return p;
 }
@@ -116,13 +138,17 @@ TEST_P(BlocksOfEveryIsa, ShadowsEqualTheWalkRayForRay) {
     const Tree tree(courtyard(random, place.at, place.scale), {left_half_only, nullptr});
     for (int group = 0; group < 60; ++group) {
       const float reaches[] = {0, 0.4f, 1, 20};
-      const std::vector<PointPacket> packets =
+      std::vector<PointPacket> packets =
           neighbours(random, tree.triangles, reaches[group % 4] * place.scale, group % 3 ? 0.0f : 0.3f);
       const Vec3 directions[] = {
           random.direction(), {0, -1, 0}, {1e-7f, -1, 0}, {0.5f, -0.5f, 0}, {-1, -1e-3f, 0.2f}};
       Light light = sun(group % 5 ? Vec3{0.3f, -1, 0.2f} : directions[group / 5 % 5]);
       if (group % 7 == 0) light = sun(directions[group / 7 % 5]);
-      const GlassRule glass = group % 2 ? GlassRule::passes : GlassRule::blocks;
+      if (group % 2) {
+        for (PointPacket& p : packets)
+          p = point_behind_edges(random, tree.triangles, -light.direction, place.scale);
+      }
+      const GlassRule glass = group % 4 < 2 ? GlassRule::passes : GlassRule::blocks;
       const size_t count = group % 6 == 5 ? 1 + random.below(16) : 16;
       const auto points = pointers(packets, count);
       ShadowAnswer answers[16];
