@@ -36,30 +36,36 @@ void make_directions(const PointPacket& points, const Frames& frames, const Ambi
   rays.live = lanes;
 }
 
-// A candidate's points that may meet it in a stratum: in squared cosines from the normal the stratum spans
+// The points of a stratum's rays that meet something. In squared cosines from the normal the stratum spans
 // [1 - (x + 1) / n, 1 - x / n], and around it [y / n, (y + 1) / n] of a turn.
-inline uint64_t lanes_in(const Candidates& c, int i, const Stratum& s) {
-  const int height = kHeights * (s.n - s.x - 1) / s.n;
-  const int first = kQuadrants * s.y / s.n, last = (kQuadrants * (s.y + 1) - 1) / s.n;
-  uint64_t around = 0;
-  for (int q = first; q <= last; ++q) around |= c.quadrant[q][i];
-  return c.height[height][i] & around;
-}
-
-// The points of a stratum's rays that meet something.
 uint64_t trace_stratum(const KdView& tree, const PointPacket& points, const Frames& frames,
                        const AmbientSettings& settings, const Candidates& candidates, const Stratum& s,
                        RayPacket& rays) {
+  const int height = kHeights * (s.n - s.x - 1) / s.n;
+  const int first = kQuadrants * s.y / s.n, last = (kQuadrants * (s.y + 1) - 1) / s.n;
   uint64_t some = 0;
-  for (int i = 0; i < candidates.count; ++i) some |= lanes_in(candidates, i, s);
+  struct Test {
+    uint64_t lanes;
+    uint32_t triangle;
+  } tests[kMaxCandidates];
+  int count = 0;
+  for (int i = 0; i < candidates.seen_at[height]; ++i) {
+    const Candidate& c = candidates.list[i];
+    uint64_t around = 0;
+    for (int q = first; q <= last; ++q) around |= c.quadrant[q];
+    const uint64_t lanes = c.height[height] & around;
+    tests[count] = {lanes, c.triangle};
+    count += lanes != 0;
+    some |= lanes;
+  }
   if (some == 0) return 0;
   make_directions(points, frames, settings, s, some, rays);
   Shears shears;
   derive_shears(rays, shears);
   uint64_t met = 0;
-  for (int i = 0; i < candidates.count; ++i) {
-    const uint64_t lanes = lanes_in(candidates, i, s) & shears.traceable & ~met;
-    if (lanes != 0) met |= test_any(tree, rays, shears, lanes, candidates.triangle[i]);
+  for (int i = 0; i < count; ++i) {
+    const uint64_t lanes = tests[i].lanes & shears.traceable & ~met;
+    if (lanes != 0) met |= test_any(tree, rays, shears, lanes, tests[i].triangle);
   }
   return met;
 }
@@ -86,7 +92,7 @@ void trace_block(const KdView& tree, const PointPacket& points, const Frames& fr
   for (int s = 0; s < n * n; ++s) {
     const Stratum stratum{s, s % n, s / n, n};
     uint64_t met;
-    if (candidates.count <= kMaxCandidates) {
+    if (candidates.count >= 0) {
       met = trace_stratum(tree, points, frames, settings, candidates, stratum, rays);
     } else {
       make_directions(points, frames, settings, stratum, points.live, rays);
@@ -110,6 +116,8 @@ void trace_group(const KdView& tree, const PointPacket* const* points, int count
   const Reach reach = reach_of(tree, points, count, settings.distance);
   // Collecting must not take longer than what it saves.
   const int most_leaves = count * (32 + 4 * settings.strata * settings.strata);
+  const int most_candidates =
+      settings.strata < 8 ? 64 + 15 * settings.strata * settings.strata : kMaxCandidates;
   TrianglePool pool;
   const bool pooled = shortcuts && collect(tree, reach, most_leaves, pool) == Collected::all;
   if (!pooled && shortcuts && count > 1 && largest_component(extent(reach.start)) > settings.distance) {
@@ -124,7 +132,7 @@ void trace_group(const KdView& tree, const PointPacket* const* points, int count
     make_frames(*points[i], frames);
     Candidates candidates;
     if (pooled)
-      choose_candidates(tree, pool, *points[i], frames, settings.distance, candidates);
+      choose_candidates(tree, pool, *points[i], frames, settings.distance, most_candidates, candidates);
     else
       walk_instead(tree, *points[i], settings.distance, candidates);
     trace_block(tree, *points[i], frames, settings, candidates, out[i].count);

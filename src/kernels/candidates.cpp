@@ -231,8 +231,8 @@ inline Extent extent_along(const Vec3T<Float>& axis, const Vec3T<Float>* corner)
 // Which points may see a triangle, how high and where. A direction that dips under the geometric surface
 // is mirrored back above it: that raises it over the shading normal's horizon, and turns it by no more
 // than twice the squared sine between the normals.
-void classify(const KdTriangle& t, const PointPacket& points, const Frames& frames, const Reach& reach, int i,
-              Candidates& out) {
+void classify(const KdTriangle& t, const PointPacket& points, const Frames& frames, const Reach& reach,
+              Candidate& out) {
   const Vec3 c[3] = {{t.corner[0][0], t.corner[0][1], t.corner[0][2]},
                      {t.corner[1][0], t.corner[1][1], t.corner[1][2]},
                      {t.corner[2][0], t.corner[2][1], t.corner[2][2]}};
@@ -244,8 +244,8 @@ void classify(const KdTriangle& t, const PointPacket& points, const Frames& fram
   // has none, and NaN decides nothing.
   const Vec3d normal = normalize(cross(to_double(c[1]) - to_double(c[0]), to_double(c[2]) - to_double(c[0])));
   const Vec3T<Float> plane = splat(to_float(normal));
-  for (int h = 0; h < kHeights; ++h) out.height[h][i] = 0;
-  for (int q = 0; q < kQuadrants; ++q) out.quadrant[q][i] = 0;
+  for (int h = 0; h < kHeights; ++h) out.height[h] = 0;
+  for (int q = 0; q < kQuadrants; ++q) out.quadrant[q] = 0;
   for (int g = 0; g < kPacketSize; g += kLanes) {
     if (group_empty(points.live, g)) continue;
     const Vec3T<Float> p = load3(points.px, points.py, points.pz, g);
@@ -274,7 +274,7 @@ void classify(const KdTriangle& t, const PointPacket& points, const Frames& fram
       const Mask runs_away =
           both(on_upper_side, slope_squared > Float((1 - least_squared) * 1.0001f + 1e-5f));
       const Mask high = both(height_squared >= away_squared * Float(least_squared), invert(runs_away));
-      out.height[h][i] |= static_cast<uint64_t>(bits(both(near, high))) << g;
+      out.height[h] |= static_cast<uint64_t>(bits(both(near, high))) << g;
     }
     const Float cosine = dot(n, geometric);
     const Float turn = greatest(Float(1.0f) - cosine * cosine, Float(0.0f)) * Float(2.0f * reach.distance);
@@ -284,18 +284,26 @@ void classify(const KdTriangle& t, const PointPacket& points, const Frames& fram
     const Mask right = x.high >= -room, left = x.low <= room, up = y.high >= -room, down = y.low <= room;
     const Mask quadrant[kQuadrants] = {both(right, up), both(left, up), both(left, down), both(right, down)};
     for (int q = 0; q < kQuadrants; ++q)
-      out.quadrant[q][i] |= static_cast<uint64_t>(bits(both(near, quadrant[q]))) << g;
+      out.quadrant[q] |= static_cast<uint64_t>(bits(both(near, quadrant[q]))) << g;
   }
+}
+
+// The greatest height at which any point may see it.
+int highest(const Candidate& c) {
+  int h = 0;
+  while (h + 1 < kHeights && c.height[h + 1] != 0) ++h;
+  return h;
 }
 
 }  // namespace
 
 void choose_candidates(const KdView& tree, const TrianglePool& pool, const PointPacket& points,
-                       const Frames& frames, float distance, Candidates& out) {
+                       const Frames& frames, float distance, int most, Candidates& out) {
   const PointPacket* const packet = &points;
   const Reach reach = reach_of(tree, &packet, 1, distance);
   out.node = entry_node(tree, reach.box);
-  out.count = 0;
+  uint32_t ids[kMaxCandidates + kLanes];
+  int count = 0;
   for (int i = 0; i < pool.count; i += kLanes) {
     const CornerLanes t{{load(pool.corner[0] + i), load(pool.corner[1] + i), load(pool.corner[2] + i)},
                         {load(pool.corner[3] + i), load(pool.corner[4] + i), load(pool.corner[5] + i)},
@@ -304,25 +312,40 @@ void choose_candidates(const KdView& tree, const TrianglePool& pool, const Point
     const Mask filled = mask_of_bits(left >= kLanes ? ~0ull : (1ull << left) - 1);
     const Mask wanted = both(within(t, reach), filled);
     if (!any(wanted)) continue;
-    compress(out.triangle + out.count, load(pool.id + i), wanted);
-    out.count += __builtin_popcount(bits(wanted));
-    if (out.count > kMaxCandidates) return;
+    compress(ids + count, load(pool.id + i), wanted);
+    count += __builtin_popcount(bits(wanted));
+    if (count > most) {
+      out.count = -1;
+      return;
+    }
   }
 
-  // Those that no point can see are dropped.
-  int kept = 0;
-  for (int i = 0; i < out.count; ++i) {
-    out.triangle[kept] = out.triangle[i];
-    classify(tree.triangles[out.triangle[kept]], points, frames, reach, kept, out);
-    if (out.height[0][kept] != 0) ++kept;
+  // Those that no point can see are dropped, and those that are seen highest stand first.
+  Candidate found[kMaxCandidates];
+  int kept = 0, of_height[kHeights] = {};
+  for (int i = 0; i < count; ++i) {
+    Candidate& c = found[kept];
+    c.triangle = ids[i];
+    classify(tree.triangles[c.triangle], points, frames, reach, c);
+    if (c.height[0] == 0) continue;
+    ++of_height[highest(c)];
+    ++kept;
   }
+  int first[kHeights];
+  int sum = 0;
+  for (int h = kHeights - 1; h >= 0; --h) {
+    first[h] = sum;
+    sum += of_height[h];
+    out.seen_at[h] = sum;
+  }
+  for (int i = 0; i < kept; ++i) out.list[first[highest(found[i])]++] = found[i];
   out.count = kept;
 }
 
 void walk_instead(const KdView& tree, const PointPacket& points, float distance, Candidates& out) {
   const PointPacket* const packet = &points;
   out.node = entry_node(tree, reach_of(tree, &packet, 1, distance).box);
-  out.count = kMaxCandidates + 1;
+  out.count = -1;
 }
 
 }  // namespace VITRAL_ISA

@@ -26,12 +26,17 @@ struct alignas(64) Frames {
   float bx[kPacketSize], by[kPacketSize], bz[kPacketSize];
 };
 
+struct Candidate {
+  uint32_t triangle;
+  uint64_t height[kHeights];      // the points that may see it that high: each holds the next
+  uint64_t quadrant[kQuadrants];  // or there
+};
+
 struct Candidates {
-  int count;                                      // more than kMaxCandidates: too many, walk from `node`
-  uint32_t node;                                  // the deepest node that holds everything
-  uint32_t triangle[kMaxCandidates + 16];         // 16: the widest register
-  uint64_t height[kHeights][kMaxCandidates];      // the points that may see it that high
-  uint64_t quadrant[kQuadrants][kMaxCandidates];  // or there
+  int count;              // negative: too many, walk from `node`
+  int seen_at[kHeights];  // the first so many may be seen that high; the first of these is `count`
+  uint32_t node;          // the deepest node that holds everything
+  Candidate list[kMaxCandidates];
 };
 
 // What the rays of some blocks can reach: within the box, above the plane.
@@ -61,9 +66,10 @@ enum class Collected { all, too_many };
 Collected collect(const KdView& tree, const Reach& reach, int most_leaves, TrianglePool& out);
 
 // Those of the pool that rays of length `distance` may meet, from the live points raised by their offsets
-// along their geometric normals, going nowhere below the planes through them.
+// along their geometric normals, going nowhere below the planes through them. More than `most`, which is at
+// most kMaxCandidates, are too many.
 void choose_candidates(const KdView& tree, const TrianglePool& pool, const PointPacket& points,
-                       const Frames& frames, float distance, Candidates& out);
+                       const Frames& frames, float distance, int most, Candidates& out);
 
 // Leaves it to the walk.
 void walk_instead(const KdView& tree, const PointPacket& points, float distance, Candidates& out);
