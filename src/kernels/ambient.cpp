@@ -106,9 +106,9 @@ void trace_block(const KdView& tree, const PointPacket& points, const Frames& fr
   }
 }
 
-// Some blocks with one pool of triangles; where that grows too large, a quarter of them at a time. When
-// the blocks are small beside the rays, a quarter of them has hardly less within its reach, and the walk
-// is left to find it.
+// Some blocks with one pool of triangles; where that grows too large, each with its own. When the blocks
+// lie close together beside the length of the rays, one of them has hardly less within its reach than all,
+// and the walk is left to find it.
 void trace_group(const KdView& tree, const PointPacket* const* points, int count,
                  const AmbientSettings& settings, FreeRays* out) {
   // Squares of shorter lengths would fall among the denormal numbers.
@@ -117,14 +117,11 @@ void trace_group(const KdView& tree, const PointPacket* const* points, int count
   // Collecting must not take longer than what it saves.
   const int most_leaves = count * (32 + 4 * settings.strata * settings.strata);
   const int most_candidates =
-      settings.strata < 8 ? 64 + 15 * settings.strata * settings.strata : kMaxCandidates;
+      settings.strata < 6 ? 128 + 24 * settings.strata * settings.strata : kMaxCandidates;
   TrianglePool pool;
   const bool pooled = shortcuts && collect(tree, reach, most_leaves, pool) == Collected::all;
-  if (!pooled && shortcuts && count > 1 && largest_component(extent(reach.start)) > settings.distance) {
-    const int part = count > 4 ? 4 : 1;
-    for (int i = 0; i < count; i += part) {
-      trace_group(tree, points + i, count - i < part ? count - i : part, settings, out + i);
-    }
+  if (!pooled && shortcuts && count > 1 && largest_component(extent(reach.start)) > 2 * settings.distance) {
+    for (int i = 0; i < count; ++i) trace_group(tree, points + i, 1, settings, out + i);
     return;
   }
   for (int i = 0; i < count; ++i) {
