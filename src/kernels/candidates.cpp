@@ -136,7 +136,8 @@ bool rises(const Box& cell, const Reach& reach) {
   return !(height < reach.floor - reach.tilt * reach.far - size * (1.0f / 1048576));
 }
 
-// The deepest node that holds everything in the box.
+}  // namespace
+
 uint32_t entry_node(const KdView& tree, const Box& box) {
   uint32_t node = 0;
   while (!is_leaf(tree.nodes[node])) {
@@ -148,8 +149,6 @@ uint32_t entry_node(const KdView& tree, const Box& box) {
   }
   return node;
 }
-
-}  // namespace
 
 Collected collect(const KdView& tree, const Reach& reach, int most_leaves, TrianglePool& out) {
   constexpr int kSeen = 1024;  // triangles met lately, so that few are taken twice
@@ -301,7 +300,6 @@ void choose_candidates(const KdView& tree, const TrianglePool& pool, const Point
                        const Frames& frames, float distance, int most, Candidates& out) {
   const PointPacket* const packet = &points;
   const Reach reach = reach_of(tree, &packet, 1, distance);
-  out.node = entry_node(tree, reach.box);
   uint32_t ids[kMaxCandidates + kLanes];
   int count = 0;
   for (int i = 0; i < pool.count; i += kLanes) {
@@ -315,7 +313,7 @@ void choose_candidates(const KdView& tree, const TrianglePool& pool, const Point
     compress(ids + count, load(pool.id + i), wanted);
     count += __builtin_popcount(bits(wanted));
     if (count > most) {
-      out.count = -1;
+      out.count = kTooMany;
       return;
     }
   }
@@ -340,12 +338,6 @@ void choose_candidates(const KdView& tree, const TrianglePool& pool, const Point
   }
   for (int i = 0; i < kept; ++i) out.list[first[highest(found[i])]++] = found[i];
   out.count = kept;
-}
-
-void walk_instead(const KdView& tree, const PointPacket& points, float distance, Candidates& out) {
-  const PointPacket* const packet = &points;
-  out.node = entry_node(tree, reach_of(tree, &packet, 1, distance).box);
-  out.count = -1;
 }
 
 }  // namespace VITRAL_ISA

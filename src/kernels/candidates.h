@@ -17,6 +17,7 @@ namespace vitral {
 namespace VITRAL_ISA {
 
 inline constexpr int kMaxCandidates = 1024;
+inline constexpr int kTooMany = -1;
 inline constexpr int kHeights = 4;    // d . n at least sqrt(h / 4)
 inline constexpr int kQuadrants = 4;  // signs of d . t and d . b: ++ -+ -- +-
 
@@ -33,9 +34,8 @@ struct Candidate {
 };
 
 struct Candidates {
-  int count;              // negative: too many, walk from `node`
+  int count;              // or kTooMany
   int seen_at[kHeights];  // the first so many may be seen that high; the first of these is `count`
-  uint32_t node;          // the deepest node that holds everything
   Candidate list[kMaxCandidates];
 };
 
@@ -71,8 +71,8 @@ Collected collect(const KdView& tree, const Reach& reach, int most_leaves, Trian
 void choose_candidates(const KdView& tree, const TrianglePool& pool, const PointPacket& points,
                        const Frames& frames, float distance, int most, Candidates& out);
 
-// Leaves it to the walk.
-void walk_instead(const KdView& tree, const PointPacket& points, float distance, Candidates& out);
+// The deepest node that holds everything in the box.
+uint32_t entry_node(const KdView& tree, const Box& box);
 
 // In trace.cpp: the any-hit walk below a node.
 uint64_t trace_any_from(const KdView& tree, uint32_t node, const RayPacket& rays, GlassRule glass);
