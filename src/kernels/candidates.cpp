@@ -218,56 +218,78 @@ inline Float distance_squared(const Vec3T<Float>& p, const Vec3& low, const Vec3
   return (x * x + y * y) + z * z;
 }
 
-// Least and greatest of a . (corner - p) over the corners.
+// The points' own coordinates along their frames' axes.
+struct alignas(64) OwnHeights {
+  float geometric[kPacketSize], normal[kPacketSize], tangent[kPacketSize], bitangent[kPacketSize];
+};
+void make_heights(const PointPacket& points, const Frames& frames, OwnHeights& out) {
+  for (int g = 0; g < kPacketSize; g += kLanes) {
+    const Vec3T<Float> p = load3(points.px, points.py, points.pz, g);
+    store(out.geometric + g, dot(load3(points.gx, points.gy, points.gz, g), p));
+    store(out.normal + g, dot(load3(points.nx, points.ny, points.nz, g), p));
+    store(out.tangent + g, dot(load3(frames.tx, frames.ty, frames.tz, g), p));
+    store(out.bitangent + g, dot(load3(frames.bx, frames.by, frames.bz, g), p));
+  }
+}
+
+// Least and greatest of axis . corner, beyond a point's own.
 struct Extent {
   Float low, high;
 };
-inline Extent extent_along(const Vec3T<Float>& axis, const Vec3T<Float>* corner) {
+inline Extent extent_along(const Vec3T<Float>& axis, const Vec3T<Float>* corner, Float own) {
   const Float a = dot(axis, corner[0]), b = dot(axis, corner[1]), c = dot(axis, corner[2]);
-  return {least_of(a, b, c), greatest_of(a, b, c)};
+  return {least_of(a, b, c) - own, greatest_of(a, b, c) - own};
+}
+
+// Of length 1, in double so that the normal of a sliver points the right way; a triangle without area has
+// none, and its NaN decides nothing.
+Vec3 plane_normal(const Vec3* c) {
+  return to_float(normalize(cross(to_double(c[1]) - to_double(c[0]), to_double(c[2]) - to_double(c[0]))));
 }
 
 // Which points may see a triangle, how high and where. A direction that dips under the geometric surface
 // is mirrored back above it: that raises it over the shading normal's horizon, and turns it by no more
 // than twice the squared sine between the normals.
-void classify(const KdTriangle& t, const PointPacket& points, const Frames& frames, const Reach& reach,
-              Candidate& out) {
+void classify(const KdTriangle& t, const PointPacket& points, const Frames& frames, const OwnHeights& own,
+              const Reach& reach, Candidate& out) {
   const Vec3 c[3] = {{t.corner[0][0], t.corner[0][1], t.corner[0][2]},
                      {t.corner[1][0], t.corner[1][1], t.corner[1][2]},
                      {t.corner[2][0], t.corner[2][1], t.corner[2][2]}};
+  const Vec3T<Float> corner[3] = {splat(c[0]), splat(c[1]), splat(c[2])};
   Box box{c[0], c[0]};
   extend(box, c[1]), extend(box, c[2]);
   const float margin =
-      margin_of(vitral::greatest(magnitude(box), reach.magnitude) + reach.distance, reach.distance);
-  // Of length 1, in double so that the normal of a sliver points the right way; a triangle without area
-  // has none, and NaN decides nothing.
-  const Vec3d normal = normalize(cross(to_double(c[1]) - to_double(c[0]), to_double(c[2]) - to_double(c[0])));
-  const Vec3T<Float> plane = splat(to_float(normal));
+      2 * margin_of(vitral::greatest(magnitude(box), reach.magnitude) + reach.distance, reach.distance);
   for (int h = 0; h < kHeights; ++h) out.height[h] = 0;
   for (int q = 0; q < kQuadrants; ++q) out.quadrant[q] = 0;
+  Vec3T<Float> plane;
+  bool has_plane = false;
   for (int g = 0; g < kPacketSize; g += kLanes) {
     if (group_empty(points.live, g)) continue;
-    const Vec3T<Float> p = load3(points.px, points.py, points.pz, g);
-    const Vec3T<Float> relative[3] = {splat(c[0]) - p, splat(c[1]) - p, splat(c[2]) - p};
-    const Vec3T<Float> geometric = load3(points.gx, points.gy, points.gz, g),
-                       n = load3(points.nx, points.ny, points.nz, g);
+    const Vec3T<Float> geometric = load3(points.gx, points.gy, points.gz, g);
     const Float offset = load(points.offset + g);
-    const Mask above =
-        both(extent_along(geometric, relative).high > offset - Float(margin), group_mask(points.live, g));
+    const Extent over = extent_along(geometric, corner, load(own.geometric + g));
+    const Mask above = both(over.high > offset - Float(margin), group_mask(points.live, g));
     if (!any(above)) continue;
+    if (!has_plane) {
+      plane = splat(plane_normal(c));
+      has_plane = true;
+    }
 
     // Seen from the ray's origin, `offset` above the point.
+    const Vec3T<Float> p = load3(points.px, points.py, points.pz, g),
+                       n = load3(points.nx, points.ny, points.nz, g);
     const Float give = offset + Float(margin);
-    const Float height = greatest(extent_along(n, relative).high + give, Float(0.0f));
     const Float away = greatest(square_root(distance_squared(p, box.min, box.max)) - give, Float(0.0f));
     const Mask near = both(above, away <= Float(reach.distance * 1.00001f));
-    const Float height_squared = height * height, away_squared = away * away * Float(0.9999f);
+    const Float away_squared = away * away * Float(0.9999f);
+    const Float height = greatest(extent_along(n, corner, load(own.normal + g)).high + give, Float(0.0f));
+    const Float height_squared = height * height;
     // A ray that runs away from the triangle's plane cannot meet it: from its upper side those that
     // are higher over the horizon than the plane is tilted.
-    const Float side = dot(plane, relative[0]) - dot(plane, geometric) * offset, slope = dot(plane, n);
-    const Float outward = copy_sign(Float(1.0f), slope);
-    const Mask on_upper_side = side * outward < Float(-2 * margin);
-    const Float slope_squared = slope * slope;
+    const Float side = (dot(plane, corner[0]) - dot(plane, p)) - dot(plane, geometric) * offset;
+    const Float slope = dot(plane, n), slope_squared = slope * slope;
+    const Mask on_upper_side = side * copy_sign(Float(1.0f), slope) < Float(-2 * margin);
     for (int h = 0; h < kHeights; ++h) {
       const float least_squared = static_cast<float>(h) * (1.0f / kHeights);
       const Mask runs_away =
@@ -278,8 +300,8 @@ void classify(const KdTriangle& t, const PointPacket& points, const Frames& fram
     const Float cosine = dot(n, geometric);
     const Float turn = greatest(Float(1.0f) - cosine * cosine, Float(0.0f)) * Float(2.0f * reach.distance);
     const Float room = give + turn;
-    const Extent x = extent_along(load3(frames.tx, frames.ty, frames.tz, g), relative);
-    const Extent y = extent_along(load3(frames.bx, frames.by, frames.bz, g), relative);
+    const Extent x = extent_along(load3(frames.tx, frames.ty, frames.tz, g), corner, load(own.tangent + g));
+    const Extent y = extent_along(load3(frames.bx, frames.by, frames.bz, g), corner, load(own.bitangent + g));
     const Mask right = x.high >= -room, left = x.low <= room, up = y.high >= -room, down = y.low <= room;
     const Mask quadrant[kQuadrants] = {both(right, up), both(left, up), both(left, down), both(right, down)};
     for (int q = 0; q < kQuadrants; ++q)
@@ -319,12 +341,14 @@ void choose_candidates(const KdView& tree, const TrianglePool& pool, const Point
   }
 
   // Those that no point can see are dropped, and those that are seen highest stand first.
+  OwnHeights own;
+  make_heights(points, frames, own);
   Candidate found[kMaxCandidates];
   int kept = 0, of_height[kHeights] = {};
   for (int i = 0; i < count; ++i) {
     Candidate& c = found[kept];
     c.triangle = ids[i];
-    classify(tree.triangles[c.triangle], points, frames, reach, c);
+    classify(tree.triangles[c.triangle], points, frames, own, reach, c);
     if (c.height[0] == 0) continue;
     ++of_height[highest(c)];
     ++kept;
