@@ -1,5 +1,6 @@
 // Ambient occlusion: one stratum of the hemisphere after the other, for all points of a block.
 #include "kernels/candidates.h"
+#include "kernels/counts.h"
 #include "kernels/lanes.h"
 #include "kernels/meet.h"
 #include "kernels/tables.h"
@@ -47,19 +48,23 @@ inline uint64_t lanes_in(const Candidates& c, int i, const Stratum& s) {
 }
 
 // The points of a stratum's rays that meet something.
+template <class Counts>
 uint64_t trace_stratum(const KdView& tree, const PointPacket& points, const Frames& frames,
                        const AmbientSettings& settings, const Candidates& candidates, const Stratum& s,
-                       RayPacket& rays) {
+                       RayPacket& rays, Counts counts) {
   uint64_t some = 0;
   for (int i = 0; i < candidates.count; ++i) some |= lanes_in(candidates, i, s);
   if (some == 0) return 0;
   make_directions(points, frames, settings, s, some, rays);
   Shears shears;
   derive_shears(rays, shears);
+  counts.trace(shears.traceable);
   uint64_t met = 0;
   for (int i = 0; i < candidates.count; ++i) {
     const uint64_t lanes = lanes_in(candidates, i, s) & shears.traceable & ~met;
-    if (lanes != 0) met |= test_any(tree, rays, shears, lanes, candidates.triangle[i]);
+    if (lanes == 0) continue;
+    counts.test(lanes);
+    met |= test_any(tree, rays, shears, lanes, candidates.triangle[i]);
   }
   return met;
 }
@@ -74,8 +79,10 @@ void make_frames(const PointPacket& points, Frames& frames) {
 }
 
 // The rays of one block, given what they can meet.
+template <class Counts>
 void trace_block(const KdView& tree, const PointPacket& points, const Frames& frames,
-                 const AmbientSettings& settings, const Candidates& candidates, uint32_t* free_rays) {
+                 const AmbientSettings& settings, const Candidates& candidates, uint32_t* free_rays,
+                 Counts counts) {
   const int n = settings.strata;
   for (int g = 0; g < kPacketSize; g += kLanes) store(free_rays + g, Uint(static_cast<uint32_t>(n * n)));
   if (candidates.count == 0) return;
@@ -87,10 +94,10 @@ void trace_block(const KdView& tree, const PointPacket& points, const Frames& fr
     const Stratum stratum{s, s % n, s / n, n};
     uint64_t met;
     if (candidates.count <= kMaxCandidates) {
-      met = trace_stratum(tree, points, frames, settings, candidates, stratum, rays);
+      met = trace_stratum(tree, points, frames, settings, candidates, stratum, rays, counts);
     } else {
       make_directions(points, frames, settings, stratum, points.live, rays);
-      met = trace_any_from(tree, candidates.node, rays, GlassRule::passes);
+      met = trace_any_from(tree, candidates.node, rays, GlassRule::passes, counts);
     }
     for (int g = 0; g < kPacketSize; g += kLanes) {
       if (group_empty(met, g)) continue;
@@ -103,18 +110,21 @@ void trace_block(const KdView& tree, const PointPacket& points, const Frames& fr
 // Some blocks with one pool of triangles; where that grows too large, a quarter of them at a time. When
 // the blocks are small beside the rays, a quarter of them has hardly less within its reach, and the walk
 // is left to find it.
+template <class Counts>
 void trace_group(const KdView& tree, const PointPacket* const* points, int count,
-                 const AmbientSettings& settings, FreeRays* out) {
+                 const AmbientSettings& settings, FreeRays* out, Counts counts) {
   const bool shortcuts = settings.shortcuts == Shortcuts::taken;
   const Reach reach = reach_of(tree, points, count, settings.distance);
   // Collecting must not take longer than what it saves.
   const int most_leaves = count * (64 + 16 * settings.strata * settings.strata);
   TrianglePool pool;
-  const bool pooled = shortcuts && collect(tree, reach, most_leaves, pool) == Collected::all;
+  const uint64_t mark = counts.mark();
+  const bool pooled = shortcuts && collect(tree, reach, most_leaves, pool, counts) == Collected::all;
+  counts.share(mark, count, [&](int i) { return points[i]->live; });
   if (!pooled && shortcuts && count > 1 && largest_component(extent(reach.start)) > settings.distance) {
     const int part = count > 4 ? 4 : 1;
     for (int i = 0; i < count; i += part) {
-      trace_group(tree, points + i, count - i < part ? count - i : part, settings, out + i);
+      trace_group(tree, points + i, count - i < part ? count - i : part, settings, out + i, counts.of(i));
     }
     return;
   }
@@ -122,28 +132,43 @@ void trace_group(const KdView& tree, const PointPacket* const* points, int count
     Frames frames;
     make_frames(*points[i], frames);
     Candidates candidates;
-    if (pooled)
+    if (pooled) {
+      const uint64_t before = counts.mark();
+      counts.group_test(pool.count);
+      counts.of(i).share(before, 1, [&](int) { return points[i]->live; });
       choose_candidates(tree, pool, *points[i], frames, settings.distance, candidates);
-    else
+    } else {
       walk_instead(tree, *points[i], settings.distance, candidates);
-    trace_block(tree, *points[i], frames, settings, candidates, out[i].count);
+    }
+    trace_block(tree, *points[i], frames, settings, candidates, out[i].count, counts.of(i));
   }
 }
 
 }  // namespace
 
+#ifdef VITRAL_COUNTED
+
+void count_ambient(const KdView& tree, const PointPacket* const* points, int count,
+                   const AmbientSettings& settings, FreeRays* out, const WorkCounts& work) {
+  if (count > 0) trace_group(tree, points, count, settings, out, Counting{work.totals, work.work});
+}
+
+#else
+
 void ambient_blocks(const KdView& tree, const PointPacket* const* points, int count,
                     const AmbientSettings& settings, FreeRays* out) {
-  if (count > 0) trace_group(tree, points, count, settings, out);
+  if (count > 0) trace_group(tree, points, count, settings, out, NoCounts{});
 }
 
 void ambient_occlusion(const KdView& tree, const PointPacket& points, const AmbientSettings& settings,
                        uint32_t* free_rays) {
   const PointPacket* const packet = &points;
   FreeRays free;
-  trace_group(tree, &packet, 1, settings, &free);
+  trace_group(tree, &packet, 1, settings, &free, NoCounts{});
   for (int lane = 0; lane < kPacketSize; ++lane) free_rays[lane] = free.count[lane];
 }
+
+#endif
 
 }  // namespace VITRAL_ISA
 }  // namespace vitral
