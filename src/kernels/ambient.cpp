@@ -116,7 +116,7 @@ void trace_group(const KdView& tree, const PointPacket* const* points, int count
   const bool shortcuts = settings.shortcuts == Shortcuts::taken;
   const Reach reach = reach_of(tree, points, count, settings.distance);
   // Collecting must not take longer than what it saves.
-  const int most_leaves = count * (64 + 16 * settings.strata * settings.strata);
+  const int most_leaves = count * (32 + 4 * settings.strata * settings.strata);
   TrianglePool pool;
   const uint64_t mark = counts.mark();
   const bool pooled = shortcuts && collect(tree, reach, most_leaves, pool, counts) == Collected::all;

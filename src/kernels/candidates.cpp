@@ -248,6 +248,10 @@ void classify(const KdTriangle& t, const PointPacket& points, const Frames& fram
   extend(box, c[1]), extend(box, c[2]);
   const float margin =
       margin_of(vitral::greatest(magnitude(box), reach.magnitude) + reach.distance, reach.distance);
+  // Of length 1, in double so that the normal of a sliver points the right way; a triangle without area
+  // has none, and NaN decides nothing.
+  const Vec3d normal = normalize(cross(to_double(c[1]) - to_double(c[0]), to_double(c[2]) - to_double(c[0])));
+  const Vec3T<Float> plane = splat(to_float(normal));
   for (int h = 0; h < kHeights; ++h) out.height[h][i] = 0;
   for (int q = 0; q < kQuadrants; ++q) out.quadrant[q][i] = 0;
   for (int g = 0; g < kPacketSize; g += kLanes) {
@@ -267,8 +271,17 @@ void classify(const KdTriangle& t, const PointPacket& points, const Frames& fram
     const Float away = greatest(square_root(distance_squared(p, box.min, box.max)) - give, Float(0.0f));
     const Mask near = both(above, away <= Float(reach.distance * 1.00001f));
     const Float height_squared = height * height, away_squared = away * away * Float(0.9999f);
+    // A ray that runs away from the triangle's plane cannot meet it: from its upper side those that
+    // are higher over the horizon than the plane is tilted.
+    const Float side = dot(plane, relative[0]) - dot(plane, geometric) * offset, slope = dot(plane, n);
+    const Float outward = copy_sign(Float(1.0f), slope);
+    const Mask on_upper_side = side * outward < Float(-2 * margin);
+    const Float slope_squared = slope * slope;
     for (int h = 0; h < kHeights; ++h) {
-      const Mask high = height_squared >= away_squared * Float(static_cast<float>(h) * (1.0f / kHeights));
+      const float least_squared = static_cast<float>(h) * (1.0f / kHeights);
+      const Mask runs_away =
+          both(on_upper_side, slope_squared > Float((1 - least_squared) * 1.0001f + 1e-5f));
+      const Mask high = both(height_squared >= away_squared * Float(least_squared), invert(runs_away));
       out.height[h][i] |= static_cast<uint64_t>(bits(both(near, high))) << g;
     }
     const Float cosine = dot(n, geometric);
