@@ -49,7 +49,7 @@ void add_camera(JsonWriter& json, const Camera& camera) {
 // With keys of their own beside those of a pass, or in an object.
 void add_counts(JsonWriter& json, const TraversalCounts& counts) {
   const double steps = static_cast<double>(counts.steps);
-  json.add("nodes", counts.nodes)
+  json.add("nodes", nodes_of(counts))
       .add("leaves", counts.leaves)
       .add("triangle_tests", counts.triangle_tests)
       .add("rays_traced", counts.rays_traced)

@@ -60,8 +60,8 @@ struct NoCounts {
 };
 struct Counting {
   TraversalCounts& totals;
-  void node() const { ++totals.nodes; }
-  void leaf() const { ++totals.nodes, ++totals.leaves; }
+  void node() const { ++totals.other_nodes; }
+  void leaf() const { ++totals.other_nodes, ++totals.leaves; }
   void test() const { ++totals.triangle_tests; }
 };
 

@@ -36,8 +36,7 @@ struct Counting {
 
   // A packet's lanes come to an inner node, to a leaf, to a triangle.
   void node(uint64_t lanes) const {
-    const uint64_t rays = static_cast<uint64_t>(__builtin_popcountll(lanes));
-    totals->nodes += rays, totals->lanes_in_steps += rays;
+    totals->lanes_in_steps += static_cast<uint64_t>(__builtin_popcountll(lanes));
     ++totals->steps;
     add_work(lanes, 1);
   }
@@ -56,13 +55,13 @@ struct Counting {
   }
 
   // The same for many rays together.
-  void group_node() const { ++totals->nodes; }
+  void group_node() const { ++totals->other_nodes; }
   void group_leaf() const { ++totals->leaves; }  // a node that has been counted
   void group_test(int triangles) const { totals->triangle_tests += static_cast<uint64_t>(triangles); }
   Hit group_walk(const KdView& tree, const Ray& ray) const { return walk_closest(tree, ray, *totals); }
 
   // What has been counted since the mark was work for the lanes of `count` packets, to equal parts.
-  uint64_t mark() const { return totals->nodes + totals->triangle_tests; }
+  uint64_t mark() const { return work_of(*totals); }
   template <class LanesOf>
   void share(uint64_t since, int count, LanesOf lanes_of) const {
     if (!work || mark() == since) return;

@@ -134,17 +134,18 @@ uint64_t trace_packet(const FrameContext& frame, const Path* paths, int count, s
   }
   Lit lit;
   const SurfacePacket* const one = &surfaces;
-  light_surfaces(frame, &one, 1, tally, &lit);
+  if (surfaces.points.live != 0) light_surfaces(frame, &one, 1, tally, &lit);
 
   const PassTimer timer(tally, pass);
   for (int lane = 0; lane < count; ++lane) {
     const Path& p = paths[lane];
-    const Vec3 seen = surfaces.points.live >> lane & 1 ? lit.light.color[lane] : frame.scene.background;
+    const bool met = surfaces.points.live >> lane & 1;
+    const Vec3 seen = met ? lit.light.color[lane] : frame.scene.background;
     const Vec3 add = p.weight * seen;
     sums.pixels[p.pixel] += add;
     Vec3* part = p.root == PathKind::reflection ? sums.reflection : sums.refraction;
     if (part) part[p.pixel] += add;
-    if (sums.cost) sums.cost[p.pixel] += work.work[lane] + lit.detail.work.work[lane];
+    if (sums.cost) sums.cost[p.pixel] += work.work[lane] + (met ? lit.detail.work.work[lane] : 0.0f);
   }
   spawn_paths(frame, surfaces, paths, next);
   return surfaces.points.live;

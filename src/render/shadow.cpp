@@ -43,10 +43,9 @@ void light_visibility(const FrameContext& frame, const Light& light, const Point
   TraversalCounts& counts = tally.traversal[static_cast<size_t>(Pass::shadows)];
   for (uint64_t left = lit; left != 0; left &= left - 1) {
     const int lane = __builtin_ctzll(left);
-    const uint64_t before = counts.nodes + counts.triangle_tests;
+    const uint64_t before = work_of(counts);
     visibility.color[lane] = glass_tint(frame, ray_of(rays, lane), counts);
-    if (frame.count == Count::pixels)
-      work->work[lane] += static_cast<float>(counts.nodes + counts.triangle_tests - before);
+    if (frame.count == Count::pixels) work->work[lane] += static_cast<float>(work_of(counts) - before);
   }
 }
 
