@@ -113,7 +113,8 @@ void trace_block(const KdView& tree, const PointPacket& points, const Frames& fr
 template <class Counts>
 void trace_group(const KdView& tree, const PointPacket* const* points, int count,
                  const AmbientSettings& settings, FreeRays* out, Counts counts) {
-  const bool shortcuts = settings.shortcuts == Shortcuts::taken;
+  // Squares of shorter lengths would fall among the denormal numbers.
+  const bool shortcuts = settings.shortcuts == Shortcuts::taken && settings.distance > 1e-12f;
   const Reach reach = reach_of(tree, points, count, settings.distance);
   // Collecting must not take longer than what it saves.
   const int most_leaves = count * (32 + 4 * settings.strata * settings.strata);

@@ -439,7 +439,7 @@ bool covers(const KdView& tree, const LightFrame& frame, const Sweep& sweep, uin
 // Does one triangle keep all of the sweep's rays from the light? Asked of those that did so before and,
 // if a ray of the sweep followed back from behind the scene meets one, of that: the outermost are often
 // walls and roofs.
-enum class Probe { dark, blocked, lit };
+enum class Probe { dark, unknown };
 template <class Counts>
 Probe probe(const KdView& tree, const LightFrame& frame, const Sweep& sweep, GlassRule glass, const Ray& ray,
             Occluders& occluders, Casters& scratch, Counts counts) {
@@ -447,16 +447,21 @@ Probe probe(const KdView& tree, const LightFrame& frame, const Sweep& sweep, Gla
     if (covers(tree, frame, sweep, occluders.id[i], scratch, counts)) return Probe::dark;
   }
   const float far = exit_distance(tree, frame, ray.origin);
-  if (!(far < kInfinity)) return Probe::lit;
+  if (!(far < kInfinity)) return Probe::unknown;
   const Hit hit = counts.group_walk(tree, {ray.origin + ray.direction * far, 0, -ray.direction, far});
-  if (hit.triangle == kNoTriangle) return Probe::lit;
+  if (hit.triangle == kNoTriangle) return Probe::unknown;
   if (glass == GlassRule::passes && (tree.triangles[hit.triangle].flags & kGlassTriangle))
-    return Probe::blocked;
-  if (!covers(tree, frame, sweep, hit.triangle, scratch, counts)) return Probe::blocked;
+    return Probe::unknown;
+  if (!covers(tree, frame, sweep, hit.triangle, scratch, counts)) return Probe::unknown;
   for (int i = Occluders::kMost - 1; i > 0; --i) occluders.id[i] = occluders.id[i - 1];
   occluders.id[0] = hit.triangle;
   occluders.count = occluders.count < Occluders::kMost ? occluders.count + 1 : Occluders::kMost;
   return Probe::dark;
+}
+
+// Rays from all over the scene have little in common.
+bool is_narrow(const KdView& tree, const Sweep& sweep) {
+  return largest_component(extent(sweep.box)) * 16 < largest_component(extent(tree.bounds));
 }
 
 // Some blocks with one list of casters; where that grows too long, a quarter of them at a time; and
@@ -473,14 +478,14 @@ void trace_group(const KdView& tree, const LightFrame& frame, GlassRule glass, c
   }
   Casters casters;
   const uint64_t mark = counts.mark();
-  const Ray ray = ray_of(rays[first], __builtin_ctzll(blocks[first].lanes));
-  const Probe probed = probe(tree, frame, sweep, glass, ray, occluders, casters, counts);
-  const Found found = probed == Probe::dark ? Found::darkness
-                                            : collect_casters(tree, frame, sweep, glass,
-                                                              kBudgets[count > 4   ? 2
-                                                                       : count > 1 ? 1
-                                                                                   : 0],
-                                                              casters, counts);
+  Found found = Found::too_many;
+  if (is_narrow(tree, sweep)) {
+    const Ray ray = ray_of(rays[first], __builtin_ctzll(blocks[first].lanes));
+    const Budget& budget = kBudgets[count > 4 ? 2 : count > 1 ? 1 : 0];
+    found = probe(tree, frame, sweep, glass, ray, occluders, casters, counts) == Probe::dark
+                ? Found::darkness
+                : collect_casters(tree, frame, sweep, glass, budget, casters, counts);
+  }
   counts.share(mark, count, [&](int i) { return blocks[i].lanes; });
   switch (found) {
     case Found::darkness:

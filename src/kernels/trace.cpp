@@ -51,52 +51,66 @@ struct alignas(64) Intervals {
   float t0[kPacketSize], t1[kPacketSize];
 };
 
+struct alignas(64) Waiting {
+  Intervals interval;
+  uint64_t lanes;
+  uint32_t node;
+  float t0, t1;  // hold the interval of every lane
+};
+
+// Bounds of the packet along one axis, mirrored where the rays run backwards: all of them cross the plane
+// at a t between those of four products.
+struct AxisBounds {
+  float sign;                 // of the directions
+  float least_o, greatest_o;  // of sign * origin
+  float least_r, greatest_r;  // of |reciprocal|
+};
+
+AxisBounds bounds_along(const float* origin, const float* reciprocal, uint64_t lanes, float sign) {
+  Float o0 = Float(kInfinity), o1 = Float(-kInfinity), r0 = o0, r1 = o1;
+  for (int g = 0; g < kPacketSize; g += kLanes) {
+    if (group_empty(lanes, g)) continue;
+    const Mask m = group_mask(lanes, g);
+    const Float o = load(origin + g) * Float(sign), r = absolute(load(reciprocal + g));
+    o0 = least(select(m, o, o0), o0), o1 = greatest(select(m, o, o1), o1);
+    r0 = least(select(m, r, r0), r0), r1 = greatest(select(m, r, r1), r1);
+  }
+  return {sign, least_lane(o0), greatest_lane(o1), least_lane(r0), greatest_lane(r1)};
+}
+
 // Which of the lanes want the near and the far child.
 struct Wanted {
   uint64_t near, far;
 };
 
-inline Wanted classify(uint64_t lanes, float split, const float* origin, const float* reciprocal, float slack,
-                       const Intervals& now) {
-  Wanted w{0, 0};
+// Cuts the intervals at the plane: the near part stays in `now`, the far part goes to `w`. A ray that
+// does not reach the plane keeps its interval; one that begins behind it is left with nothing in `now`.
+inline Wanted cut_intervals(uint64_t lanes, float split, const float* origin, const float* reciprocal,
+                            float slack, Intervals& now, Waiting& w) {
+  Wanted wanted{0, 0};
   for (int g = 0; g < kPacketSize; g += kLanes) {
     if (group_empty(lanes, g)) continue;
     const Float r = load(reciprocal + g);
     const Float t = (Float(split) - load(origin + g)) * r;
     const Float give = Float(slack) * absolute(r);
-    const Mask only_near = t - give > load(now.t1 + g);
-    const Mask only_far = both(invert(only_near), t + give < load(now.t0 + g));
-    w.near |= static_cast<uint64_t>(bits(invert(only_far))) << g;
-    w.far |= static_cast<uint64_t>(bits(invert(only_near))) << g;
-  }
-  w.near &= lanes;
-  w.far &= lanes;
-  return w;
-}
-
-struct alignas(64) Waiting {
-  Intervals interval;
-  uint64_t lanes;
-  uint32_t node;
-};
-
-// Cuts the intervals at the plane: the near part stays in `now`, the far part goes to `w`.
-inline void cut_intervals(uint64_t lanes, float split, const float* origin, const float* reciprocal,
-                          float slack, Intervals& now, Waiting& w) {
-  for (int g = 0; g < kPacketSize; g += kLanes) {
-    if (group_empty(lanes, g)) continue;
-    const Float r = load(reciprocal + g);
-    const Float t = (Float(split) - load(origin + g)) * r;
-    const Float give = Float(slack) * absolute(r);
-    const Float t1 = load(now.t1 + g);
-    store(w.interval.t0 + g, greatest(t - give, load(now.t0 + g)));
+    const Float t0 = load(now.t0 + g), t1 = load(now.t1 + g), first = t - give, last = t + give;
+    const Mask only_near = first > t1;
+    const Mask only_far = both(invert(only_near), last < t0);
+    wanted.near |= static_cast<uint64_t>(bits(invert(only_far))) << g;
+    wanted.far |= static_cast<uint64_t>(bits(invert(only_near))) << g;
+    store(w.interval.t0 + g, greatest(first, t0));
     store(w.interval.t1 + g, t1);
-    store(now.t1 + g, least(t + give, t1));
+    store(now.t1 + g, least(last, t1));
   }
+  wanted.near &= lanes;
+  wanted.far &= lanes;
+  return wanted;
 }
 
 // Walks the tree from `node` with `lanes`, whose directions all have the signs of bit 0-2 of `octant` (set:
 // negative). Returns the lanes that met something.
+//
+// Where the bounds of all rays agree that none wants one of the children, no ray is looked at.
 template <Query query, class Counts>
 uint64_t walk_octant(const KdView& tree, const RayPacket& rays, const Derived& d, uint64_t lanes, int octant,
                      uint32_t node, GlassRule glass, HitPacket* hits, Counts counts) {
@@ -104,12 +118,21 @@ uint64_t walk_octant(const KdView& tree, const RayPacket& rays, const Derived& d
   const float* reciprocal[3] = {d.rx, d.ry, d.rz};
   Viewer viewer;
   const bool same_axis = find_viewer(rays, d.shears, lanes, viewer);
+  AxisBounds bounds[3];
+  for (int a = 0; a < 3; ++a)
+    bounds[a] = bounds_along(origin[a], reciprocal[a], lanes, octant >> a & 1 ? -1.0f : 1.0f);
 
   Intervals now;
+  Float least_t0 = Float(kInfinity), greatest_t1 = Float(-kInfinity);
   for (int g = 0; g < kPacketSize; g += kLanes) {
-    store(now.t0 + g, load(d.t0 + g));
-    store(now.t1 + g, load(d.t1 + g));
+    const Float t0 = load(d.t0 + g), t1 = load(d.t1 + g);
+    store(now.t0 + g, t0);
+    store(now.t1 + g, t1);
+    const Mask m = group_mask(lanes, g);
+    least_t0 = least(select(m, t0, least_t0), least_t0);
+    greatest_t1 = greatest(select(m, t1, greatest_t1), greatest_t1);
   }
+  float all_t0 = least_lane(least_t0), all_t1 = greatest_lane(greatest_t1);
   Waiting stack[kMaxTreeDepth];
   int waiting = 0;
   uint64_t open = lanes;  // rays that may still meet something new
@@ -121,16 +144,32 @@ uint64_t walk_octant(const KdView& tree, const RayPacket& rays, const Derived& d
       const int a = axis(n);
       const uint32_t negative = static_cast<uint32_t>(octant >> a) & 1u;
       const uint32_t near = child(n) + negative, far = child(n) + 1 - negative;
-      const Wanted wanted = classify(lanes, split(n), origin[a], reciprocal[a], d.slack, now);
+      const AxisBounds& b = bounds[a];
+      const float s = split(n) * b.sign, soonest = s - b.greatest_o, latest = s - b.least_o;
+      const float give = d.slack * b.greatest_r;
+      const float first = soonest * (soonest < 0 ? b.greatest_r : b.least_r) - give;
+      const float last = latest * (latest < 0 ? b.least_r : b.greatest_r) + give;
+      if (first > all_t1) {
+        node = near;
+        continue;
+      }
+      if (last < all_t0) {
+        node = far;
+        continue;
+      }
+      Waiting& w = stack[waiting];
+      const Wanted wanted = cut_intervals(lanes, split(n), origin[a], reciprocal[a], d.slack, now, w);
       if (wanted.far == 0) {
         node = near;
       } else if (wanted.near == 0) {
+        for (int g = 0; g < kPacketSize; g += kLanes) store(now.t1 + g, load(w.interval.t1 + g));
         node = far;
       } else {
-        Waiting& w = stack[waiting++];
         w.node = far;
         w.lanes = wanted.far;
-        cut_intervals(lanes, split(n), origin[a], reciprocal[a], d.slack, now, w);
+        w.t0 = vitral::greatest(first, all_t0), w.t1 = all_t1;
+        all_t1 = vitral::least(last, all_t1);
+        ++waiting;
         node = near;
         lanes = wanted.near;
       }
@@ -138,8 +177,10 @@ uint64_t walk_octant(const KdView& tree, const RayPacket& rays, const Derived& d
 
     counts.leaf(lanes);
     const KdNode& leaf = tree.nodes[node];
+    const uint32_t* ids = tree.references + first_reference(leaf);
+    for (uint32_t i = 1; i < count(leaf); ++i) __builtin_prefetch(&tree.triangles[ids[i]]);
     for (uint32_t i = 0; i < count(leaf) && lanes != 0; ++i) {
-      const uint32_t id = tree.references[first_reference(leaf) + i];
+      const uint32_t id = ids[i];
       if (glass == GlassRule::passes && (tree.triangles[id].flags & kGlassTriangle)) continue;
       counts.test(lanes);
       const uint64_t here = same_axis
@@ -156,6 +197,7 @@ uint64_t walk_octant(const KdView& tree, const RayPacket& rays, const Derived& d
       const Waiting& w = stack[--waiting];
       node = w.node;
       lanes = w.lanes & open;
+      all_t0 = w.t0, all_t1 = w.t1;
       for (int g = 0; g < kPacketSize; g += kLanes) {
         if (group_empty(lanes, g)) continue;
         const Float t0 = load(w.interval.t0 + g);

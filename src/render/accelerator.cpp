@@ -78,7 +78,10 @@ void build_accelerator(const Scene& scene, ThreadPool& pool, const Control& cont
     });
   };
   const BuildSettings settings;
-  a.all = build_kdtree(a.triangles, all, settings, executor);
+  const BuildProgress progress = [&](double share) {
+    if (control.on_progress) control.on_progress({"build", share, 0});
+  };
+  a.all = build_kdtree(a.triangles, all, settings, executor, progress);
   a.glass = build_kdtree(a.triangles, glass, settings, executor);
   a.has_glass = !glass.empty();
   set_views(scene, a);
