@@ -1,5 +1,6 @@
 // One frame: settings in, pixels and figures out.
 #pragma once
+#include "vitral/counts.h"
 #include "vitral/image.h"
 #include "vitral/scene.h"
 
@@ -46,16 +47,19 @@ struct Settings {
   Isa isa = Isa::automatic;
   int threads = 0;  // 0: one per processor
   uint32_t seed = 1;
-  bool keep_radiance = true;   // Frame::radiance is filled; 12 bytes a pixel
+  bool keep_radiance = true;      // Frame::radiance is filled; 12 bytes a pixel
+  bool count_traversal = false;   // the counts in Stats; the AOV `cost` fills them, too
   std::vector<std::string> aovs;  // names out of kAovNames
 };
 
 inline constexpr const char* kAovNames[] = {"position", "normal",     "geometric-normal", "depth",
                                             "albedo",   "material",   "primitive",        "shadow",
-                                            "ao",       "reflection", "refraction"};
+                                            "ao",       "reflection", "refraction",       "cost"};
 
 // An auxiliary picture: 1 or 3 floats a pixel. Where nothing is seen it holds 0; `material` and
-// `primitive`, which are numbers from 0 on, hold -1.
+// `primitive`, which are numbers from 0 on, hold -1. `cost` is how many nodes were visited and triangles
+// tested for all rays of the pixel; work that many rays share counts in equal parts for each. Unlike the
+// others it depends on the instruction set and the crop, which decide what is shared.
 struct Aov {
   std::string name;
   int channels = 1;
@@ -66,6 +70,7 @@ struct PassStats {
   std::string name;
   double seconds = 0;  // summed over the workers
   uint64_t rays = 0;
+  TraversalCounts traversal{};  // zero unless counted
 };
 
 struct Stats {
@@ -76,6 +81,8 @@ struct Stats {
   double build_seconds = 0, frame_seconds = 0;  // wall clock
   std::vector<PassStats> passes;                // raster, shadows, reflection, refraction, ao, shade, resolve
   uint64_t covered_pixels = 0, not_finite_pixels = 0;
+  bool counted = false;         // settings.count_traversal, or the AOV `cost`
+  TraversalCounts traversal{};  // of all passes
 };
 
 struct Frame {

@@ -70,6 +70,7 @@ void override_settings(const Options& options, Settings& settings) {
   override_with(options.threads, settings.threads);
   override_with(options.seed, settings.seed);
   settings.aovs = options.aovs;
+  settings.count_traversal = !options.stats.empty();
   settings.keep_radiance = false;  // nobody writes it
 }
 

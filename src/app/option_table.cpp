@@ -169,7 +169,8 @@ constexpr OptionRow kTable[] = {
     {kInOut, "--aov", "", "LIST", kRender,
      "also write NAME.AOV.pfm beside the output, for each AOV of:\n"
      "position,normal,geometric-normal,depth,albedo,material,primitive,\n"
-     "shadow,ao,reflection,refraction",
+     "shadow,ao,reflection,refraction,cost; cost is how many nodes and\n"
+     "triangles all rays of the pixel came to",
      [](O& o, const R& r, const S& v) { o.aovs = aovs(r, v); }},
 
     {kView, "--size", "", "WxH", kFrame, "pixels (the project's; 1024x1024 for a mesh)",

@@ -46,6 +46,18 @@ void add_camera(JsonWriter& json, const Camera& camera) {
       .end_object();
 }
 
+// With keys of their own beside those of a pass, or in an object.
+void add_counts(JsonWriter& json, const TraversalCounts& counts) {
+  const double steps = static_cast<double>(counts.steps);
+  json.add("nodes", nodes_of(counts))
+      .add("leaves", counts.leaves)
+      .add("triangle_tests", counts.triangle_tests)
+      .add("rays_traced", counts.rays_traced)
+      .add("rays_culled", counts.rays_culled)
+      .add("packet_steps", counts.steps)
+      .add("lanes_per_step", counts.steps > 0 ? static_cast<double>(counts.lanes_in_steps) / steps : 0.0);
+}
+
 }  // namespace
 
 std::string stats_json(const Job& job, const Stats& stats, const RunTimes& times) {
@@ -74,13 +86,17 @@ std::string stats_json(const Job& job, const Stats& stats, const RunTimes& times
       .end_object()
       .begin_array("passes");
   for (const PassStats& pass : stats.passes) {
-    json.begin_object()
-        .add("name", pass.name)
-        .add("worker_seconds", pass.seconds)
-        .add("rays", pass.rays)
-        .end_object();
+    json.begin_object().add("name", pass.name).add("worker_seconds", pass.seconds).add("rays", pass.rays);
+    if (stats.counted) add_counts(json, pass.traversal);
+    json.end_object();
   }
-  return json.end_array().end_object().text();
+  json.end_array();
+  if (stats.counted) {
+    json.begin_object("traversal");
+    add_counts(json, stats.traversal);
+    json.end_object();
+  }
+  return json.end_object().text();
 }
 
 }  // namespace vitral

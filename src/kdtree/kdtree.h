@@ -5,6 +5,7 @@
 #pragma once
 #include "math/scalar.h"
 #include "vitral/box.h"
+#include "vitral/counts.h"
 #include "vitral/ray.h"
 #include "vitral/scene.h"
 
@@ -118,6 +119,7 @@ static inline auto is_traceable(const Vec3T<F>& origin, const Vec3T<F>& directio
 
 // One ray, one lane at a time. The text to read first, and the reference for the packets.
 Hit walk_closest(const KdView& tree, const Ray& ray);
+Hit walk_closest(const KdView& tree, const Ray& ray, TraversalCounts& counts);  // adds nodes and tests
 bool walk_any(const KdView& tree, const Ray& ray, GlassRule glass);
 
 // The same answer from testing all triangles [0, triangles): what the tree is measured against.

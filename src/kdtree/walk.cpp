@@ -52,8 +52,21 @@ bool test_triangle(const KdView& tree, const Ray& ray, int z_axis, const Shear<f
   return true;
 }
 
-template <Query query>
-Hit walk(const KdView& tree, const Ray& ray, GlassRule glass) {
+// What the walk counts, or does not.
+struct NoCounts {
+  void node() const {}
+  void leaf() const {}
+  void test() const {}
+};
+struct Counting {
+  TraversalCounts& totals;
+  void node() const { ++totals.other_nodes; }
+  void leaf() const { ++totals.other_nodes, ++totals.leaves; }
+  void test() const { ++totals.triangle_tests; }
+};
+
+template <Query query, class Counts>
+Hit walk(const KdView& tree, const Ray& ray, GlassRule glass, Counts counts) {
   Hit best;
   if (!is_traceable(ray.origin, ray.direction)) return best;
   const Vec3 reciprocal{safe_reciprocal(ray.direction.x), safe_reciprocal(ray.direction.y),
@@ -73,6 +86,7 @@ Hit walk(const KdView& tree, const Ray& ray, GlassRule glass) {
   for (;;) {
     // Descend to the leaf at the near end of the interval.
     while (!is_leaf(tree.nodes[node])) {
+      counts.node();
       const KdNode& n = tree.nodes[node];
       const float r = component(reciprocal, axis(n));
       const float t = (split(n) - component(ray.origin, axis(n))) * r;
@@ -90,10 +104,12 @@ Hit walk(const KdView& tree, const Ray& ray, GlassRule glass) {
     }
 
     // A hit counts even when it lies outside this cell: it is a hit all the same.
+    counts.leaf();
     const KdNode& leaf = tree.nodes[node];
     for (uint32_t i = 0; i < count(leaf); ++i) {
       const uint32_t id = tree.references[first_reference(leaf) + i];
       if (glass == GlassRule::passes && (tree.triangles[id].flags & kGlassTriangle)) continue;
+      counts.test();
       if (test_triangle(tree, ray, z_axis, shear, id, best) && query == Query::any) return best;
     }
 
@@ -110,11 +126,15 @@ Hit walk(const KdView& tree, const Ray& ray, GlassRule glass) {
 }  // namespace
 
 Hit walk_closest(const KdView& tree, const Ray& ray) {
-  return walk<Query::closest>(tree, ray, GlassRule::blocks);
+  return walk<Query::closest>(tree, ray, GlassRule::blocks, NoCounts{});
+}
+
+Hit walk_closest(const KdView& tree, const Ray& ray, TraversalCounts& counts) {
+  return walk<Query::closest>(tree, ray, GlassRule::blocks, Counting{counts});
 }
 
 bool walk_any(const KdView& tree, const Ray& ray, GlassRule glass) {
-  return walk<Query::any>(tree, ray, glass).triangle != kNoTriangle;
+  return walk<Query::any>(tree, ray, glass, NoCounts{}).triangle != kNoTriangle;
 }
 
 Hit brute_force_closest(const KdView& tree, uint32_t triangles, const Ray& ray, GlassRule glass) {

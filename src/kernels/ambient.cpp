@@ -1,5 +1,6 @@
 // Ambient occlusion: one stratum of the hemisphere after the other, for all points of a block.
 #include "kernels/candidates.h"
+#include "kernels/counts.h"
 #include "kernels/lanes.h"
 #include "kernels/meet.h"
 #include "kernels/tables.h"
@@ -38,9 +39,10 @@ void make_directions(const PointPacket& points, const Frames& frames, const Ambi
 
 // The points of a stratum's rays that meet something. In squared cosines from the normal the stratum spans
 // [1 - (x + 1) / n, 1 - x / n], and around it [y / n, (y + 1) / n] of a turn.
+template <class Counts>
 uint64_t trace_stratum(const KdView& tree, const PointPacket& points, const Frames& frames,
                        const AmbientSettings& settings, const Candidates& candidates, const Stratum& s,
-                       RayPacket& rays) {
+                       RayPacket& rays, Counts counts) {
   const int height = kHeights * (s.n - s.x - 1) / s.n;
   const int first = kQuadrants * s.y / s.n, last = (kQuadrants * (s.y + 1) - 1) / s.n;
   uint64_t some = 0;
@@ -62,10 +64,13 @@ uint64_t trace_stratum(const KdView& tree, const PointPacket& points, const Fram
   make_directions(points, frames, settings, s, some, rays);
   Shears shears;
   derive_shears(rays, shears);
+  counts.trace(shears.traceable);
   uint64_t met = 0;
   for (int i = 0; i < count; ++i) {
     const uint64_t lanes = tests[i].lanes & shears.traceable & ~met;
-    if (lanes != 0) met |= test_any(tree, rays, shears, lanes, tests[i].triangle);
+    if (lanes == 0) continue;
+    counts.test(lanes);
+    met |= test_any(tree, rays, shears, lanes, tests[i].triangle);
   }
   return met;
 }
@@ -103,7 +108,9 @@ inline Uint kind_of(const Vec3T<Float>& d) {
 }
 
 // Traces up to 64 rays of a bin and takes them out.
-void flush(const KdView& tree, const RaySorter& sorter, float distance, RayBin& bin, FreeRays* free_rays) {
+template <class Counts>
+void flush(const KdView& tree, const RaySorter& sorter, float distance, RayBin& bin, FreeRays* free_rays,
+           Counts counts) {
   const int n = bin.count < kPacketSize ? bin.count : kPacketSize;
   RayPacket rays;
   float* const to[6] = {rays.ox, rays.oy, rays.oz, rays.dx, rays.dy, rays.dz};
@@ -115,7 +122,9 @@ void flush(const KdView& tree, const RaySorter& sorter, float distance, RayBin& 
   for (int g = 0; g < kPacketSize; g += kLanes) store(rays.tmax + g, Float(distance));
   rays.tmin = 0;
   rays.live = n == kPacketSize ? ~0ull : (1ull << n) - 1;
-  uint64_t met = trace_any_from(tree, sorter.node, rays, GlassRule::passes);
+  uint64_t met = counts.of_lanes(bin.id, n, [&](auto of_packet) {
+    return trace_any_from(tree, sorter.node, rays, GlassRule::passes, of_packet);
+  });
   for (; met != 0; met &= met - 1) {
     const uint32_t id = bin.id[__builtin_ctzll(met)];
     --free_rays[id / kPacketSize].count[id % kPacketSize];
@@ -125,8 +134,9 @@ void flush(const KdView& tree, const RaySorter& sorter, float distance, RayBin& 
 }
 
 // Puts the live rays of a block into the bins, and traces those that are full.
+template <class Counts>
 void sort_rays(const KdView& tree, RaySorter& sorter, const RayPacket& rays, int block, float distance,
-               FreeRays* free_rays) {
+               FreeRays* free_rays, Counts counts) {
   for (int g = 0; g < kPacketSize; g += kLanes) {
     uint32_t left = bits(group_mask(rays.live, g));
     if (left == 0) continue;
@@ -145,16 +155,17 @@ void sort_rays(const KdView& tree, RaySorter& sorter, const RayPacket& rays, int
       compress(bin.dx + n, d.x, m), compress(bin.dy + n, d.y, m), compress(bin.dz + n, d.z, m);
       compress(bin.id + n, id, m);
       bin.count += __builtin_popcount(same);
-      if (bin.count >= kPacketSize) flush(tree, sorter, distance, bin, free_rays);
+      if (bin.count >= kPacketSize) flush(tree, sorter, distance, bin, free_rays, counts);
     }
   }
 }
 
 // What the rays of one block meet: found among the candidates, or, where these are too many, by the walk.
 enum class Walk { sorted, as_they_come };
+template <class Counts>
 void trace_block(const KdView& tree, const PointPacket& points, const Frames& frames,
                  const AmbientSettings& settings, const Candidates& candidates, Walk walk, RaySorter& sorter,
-                 int block, FreeRays* free_rays) {
+                 int block, FreeRays* free_rays, Counts counts) {
   const int n = settings.strata;
   uint32_t* const count = free_rays[block].count;
   for (int g = 0; g < kPacketSize; g += kLanes) store(count + g, Uint(static_cast<uint32_t>(n * n)));
@@ -167,13 +178,13 @@ void trace_block(const KdView& tree, const PointPacket& points, const Frames& fr
     const Stratum stratum{s, s % n, s / n, n};
     uint64_t met = 0;
     if (candidates.count > 0) {
-      met = trace_stratum(tree, points, frames, settings, candidates, stratum, rays);
+      met = trace_stratum(tree, points, frames, settings, candidates, stratum, rays, counts.of(block));
     } else {
       make_directions(points, frames, settings, stratum, points.live, rays);
       if (walk == Walk::sorted)
-        sort_rays(tree, sorter, rays, block, settings.distance, free_rays);
+        sort_rays(tree, sorter, rays, block, settings.distance, free_rays, counts);
       else
-        met = trace_any(tree, rays, GlassRule::passes);
+        met = trace_any_from(tree, 0, rays, GlassRule::passes, counts.of(block));
     }
     for (int g = 0; g < kPacketSize; g += kLanes) {
       if (group_empty(met, g)) continue;
@@ -186,8 +197,9 @@ void trace_block(const KdView& tree, const PointPacket& points, const Frames& fr
 // Some blocks with one pool of triangles; where that grows too large, each with its own. When the blocks
 // lie close together beside the length of the rays, one of them has hardly less within its reach than all,
 // and the walk is left to find it.
+template <class Counts>
 void trace_group(const KdView& tree, const PointPacket* const* points, int count,
-                 const AmbientSettings& settings, FreeRays* out) {
+                 const AmbientSettings& settings, FreeRays* out, Counts counts) {
   // Squares of shorter lengths would fall among the denormal numbers.
   const bool shortcuts = settings.shortcuts == Shortcuts::taken && settings.distance > 1e-12f;
   const Reach reach = reach_of(tree, points, count, settings.distance);
@@ -196,9 +208,11 @@ void trace_group(const KdView& tree, const PointPacket* const* points, int count
   const int most_candidates =
       settings.strata < 6 ? 128 + 24 * settings.strata * settings.strata : kMaxCandidates;
   TrianglePool pool;
-  const bool pooled = shortcuts && collect(tree, reach, most_leaves, pool) == Collected::all;
+  const uint64_t mark = counts.mark();
+  const bool pooled = shortcuts && collect(tree, reach, most_leaves, pool, counts) == Collected::all;
+  counts.share(mark, count, [&](int i) { return points[i]->live; });
   if (!pooled && shortcuts && count > 1 && largest_component(extent(reach.start)) > 2 * settings.distance) {
-    for (int i = 0; i < count; ++i) trace_group(tree, points + i, 1, settings, out + i);
+    for (int i = 0; i < count; ++i) trace_group(tree, points + i, 1, settings, out + i, counts.of(i));
     return;
   }
   RaySorter sorter;
@@ -210,29 +224,44 @@ void trace_group(const KdView& tree, const PointPacket* const* points, int count
     make_frames(*points[i], frames);
     Candidates candidates;
     candidates.count = kTooMany;
-    if (pooled)
+    if (pooled) {
+      const uint64_t before = counts.mark();
+      counts.group_test(pool.count);
+      counts.of(i).share(before, 1, [&](int) { return points[i]->live; });
       choose_candidates(tree, pool, *points[i], frames, settings.distance, most_candidates, candidates);
-    trace_block(tree, *points[i], frames, settings, candidates, walk, sorter, i, out);
+    }
+    trace_block(tree, *points[i], frames, settings, candidates, walk, sorter, i, out, counts);
   }
   for (RayBin& bin : sorter.bins) {
-    if (bin.count > 0) flush(tree, sorter, settings.distance, bin, out);
+    if (bin.count > 0) flush(tree, sorter, settings.distance, bin, out, counts);
   }
 }
 
 }  // namespace
 
+#ifdef VITRAL_COUNTED
+
+void count_ambient(const KdView& tree, const PointPacket* const* points, int count,
+                   const AmbientSettings& settings, FreeRays* out, const WorkCounts& work) {
+  if (count > 0) trace_group(tree, points, count, settings, out, Counting{work.totals, work.work});
+}
+
+#else
+
 void ambient_blocks(const KdView& tree, const PointPacket* const* points, int count,
                     const AmbientSettings& settings, FreeRays* out) {
-  if (count > 0) trace_group(tree, points, count, settings, out);
+  if (count > 0) trace_group(tree, points, count, settings, out, NoCounts{});
 }
 
 void ambient_occlusion(const KdView& tree, const PointPacket& points, const AmbientSettings& settings,
                        uint32_t* free_rays) {
   const PointPacket* const packet = &points;
   FreeRays free;
-  trace_group(tree, &packet, 1, settings, &free);
+  trace_group(tree, &packet, 1, settings, &free, NoCounts{});
   for (int lane = 0; lane < kPacketSize; ++lane) free_rays[lane] = free.count[lane];
 }
+
+#endif
 
 }  // namespace VITRAL_ISA
 }  // namespace vitral

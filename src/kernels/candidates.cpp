@@ -1,5 +1,6 @@
 #include "kernels/candidates.h"
 
+#include "kernels/counts.h"
 #include "kernels/lanes.h"
 #include "kernels/meet.h"
 
@@ -150,7 +151,8 @@ uint32_t entry_node(const KdView& tree, const Box& box) {
   return node;
 }
 
-Collected collect(const KdView& tree, const Reach& reach, int most_leaves, TrianglePool& out) {
+template <class Counts>
+Collected collect(const KdView& tree, const Reach& reach, int most_leaves, TrianglePool& out, Counts counts) {
   constexpr int kSeen = 1024;  // triangles met lately, so that few are taken twice
   uint32_t seen[kSeen];
   for (int i = 0; i < kSeen; ++i) seen[i] = kNoTriangle;
@@ -165,6 +167,7 @@ Collected collect(const KdView& tree, const Reach& reach, int most_leaves, Trian
   Box cell = reach.box;
   out.count = 0;
   for (;;) {
+    counts.group_node();
     const KdNode& n = tree.nodes[node];
     if (!is_leaf(n)) {
       // A cell is as large as the planes above it say, and a little larger.
@@ -184,6 +187,7 @@ Collected collect(const KdView& tree, const Reach& reach, int most_leaves, Trian
       }
       if (rises(cell, reach)) continue;
     } else {
+      counts.group_leaf();
       if (++leaves > most_leaves) return Collected::too_many;
       for (uint32_t i = 0; i < count(n); ++i) {
         const uint32_t id = tree.references[first_reference(n) + i];
@@ -192,6 +196,7 @@ Collected collect(const KdView& tree, const Reach& reach, int most_leaves, Trian
         if (tree.triangles[id].flags & kGlassTriangle) continue;
         ids[pending++] = id;
         if (pending < kLanes) continue;
+        counts.group_test(pending);
         add(tree, reach, ids, pending, out);
         pending = 0;
         if (out.count > kMaxPool - kLanes) return Collected::too_many;
@@ -201,9 +206,12 @@ Collected collect(const KdView& tree, const Reach& reach, int most_leaves, Trian
     --waiting;
     node = stack[waiting].node, cell = stack[waiting].cell;
   }
+  counts.group_test(pending);
   if (pending > 0) add(tree, reach, ids, pending, out);
   return Collected::all;
 }
+template Collected collect(const KdView&, const Reach&, int, TrianglePool&, NoCounts);
+template Collected collect(const KdView&, const Reach&, int, TrianglePool&, Counting);
 
 namespace {
 

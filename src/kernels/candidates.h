@@ -11,6 +11,7 @@
 // All of it is by margins that cover every rounding, so that the answer is that of the walk.
 #pragma once
 #include "kdtree/kdtree.h"
+#include "kernels/counts.h"
 #include "kernels/points.h"
 
 namespace vitral {
@@ -63,7 +64,8 @@ struct alignas(64) TrianglePool {
 
 // Gives up when there are too many, or after `most_leaves` leaves.
 enum class Collected { all, too_many };
-Collected collect(const KdView& tree, const Reach& reach, int most_leaves, TrianglePool& out);
+template <class Counts>
+Collected collect(const KdView& tree, const Reach& reach, int most_leaves, TrianglePool& out, Counts counts);
 
 // Those of the pool that rays of length `distance` may meet, from the live points raised by their offsets
 // along their geometric normals, going nowhere below the planes through them. More than `most`, which is at
@@ -75,7 +77,10 @@ void choose_candidates(const KdView& tree, const TrianglePool& pool, const Point
 uint32_t entry_node(const KdView& tree, const Box& box);
 
 // In trace.cpp: the any-hit walk below a node.
-uint64_t trace_any_from(const KdView& tree, uint32_t node, const RayPacket& rays, GlassRule glass);
+uint64_t trace_any_from(const KdView& tree, uint32_t node, const RayPacket& rays, GlassRule glass,
+                        NoCounts counts);
+uint64_t trace_any_from(const KdView& tree, uint32_t node, const RayPacket& rays, GlassRule glass,
+                        Counting counts);
 
 }  // namespace VITRAL_ISA
 }  // namespace vitral

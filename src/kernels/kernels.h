@@ -57,6 +57,14 @@ struct Kernels {
   // without a triangle get the Hit of nothing.
   void (*intersect_visible)(const Pinhole& camera, const KdTriangle* triangles, int x, int y,
                             const uint32_t* numbers, HitPacket& hits);
+
+  // trace_closest, trace_shadows and ambient_blocks, with the same answers, which also add up what they do.
+  void (*count_closest)(const KdView& tree, const RayPacket& rays, HitPacket& hits, const WorkCounts& out);
+  void (*count_shadows)(const KdView& tree, const Light& light, GlassRule glass,
+                        const PointPacket* const* points, int count, ShadowAnswer* out,
+                        const WorkCounts& work);
+  void (*count_ambient)(const KdView& tree, const PointPacket* const* points, int count,
+                        const AmbientSettings& settings, FreeRays* out, const WorkCounts& work);
 };
 
 // The table of every instruction set that was built.

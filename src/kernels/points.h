@@ -2,6 +2,7 @@
 #pragma once
 #include "kernels/packet.h"
 #include "math/random.h"
+#include "vitral/counts.h"
 
 namespace vitral {
 
@@ -39,6 +40,17 @@ struct ShadowAnswer {
 // Of 64 points: how many of each one's ambient rays meet nothing opaque.
 struct alignas(64) FreeRays {
   uint32_t count[kPacketSize];
+};
+
+// Of 64 rays or points: nodes visited and triangles tested for each.
+struct alignas(64) LaneWork {
+  float work[kPacketSize];
+};
+
+// Where a kernel that counts adds what it did. `work` has one entry for each packet, or is null.
+struct WorkCounts {
+  TraversalCounts* totals;
+  LaneWork* work;
 };
 
 struct AmbientSettings {

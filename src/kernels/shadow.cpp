@@ -10,6 +10,8 @@
 // None of this decides what it cannot be sure of. Every comparison is by a margin that covers the
 // rounding of both this file's arithmetic and the exact test's (kdtree/triangle.h); where it falls in
 // between, the exact test is made. So the answer is that of the walk through the tree, ray for ray.
+#include "kernels/candidates.h"
+#include "kernels/counts.h"
 #include "kernels/meet.h"
 #include "kernels/points.h"
 #include "kernels/tables.h"
@@ -182,8 +184,9 @@ inline constexpr Budget kBudgets[3] = {{96, 96}, {96, 64}, {160, 128}};
 
 // Collects the casters that a sweep can meet: the cells that the box of origins, grown by the slack,
 // passes through on its way along the direction, each within a span [t0, t1] of the way.
-Found collect(const KdView& tree, const LightFrame& frame, const Sweep& sweep, GlassRule glass,
-              const Budget& budget, Casters& out) {
+template <class Counts>
+Found collect_casters(const KdView& tree, const LightFrame& frame, const Sweep& sweep, GlassRule glass,
+                      const Budget& budget, Casters& out, Counts counts) {
   const float slack = traversal_slack(vitral::greatest(tree.magnitude, magnitude(sweep.box)));
   const float reciprocal[3] = {frame.reciprocal.x, frame.reciprocal.y, frame.reciprocal.z};
   float low[3], high[3];
@@ -211,6 +214,7 @@ Found collect(const KdView& tree, const LightFrame& frame, const Sweep& sweep, G
   uint32_t node = 0;
   for (;;) {
     while (!is_leaf(tree.nodes[node])) {
+      counts.group_node();
       const KdNode& n = tree.nodes[node];
       const int a = axis(n);
       const float r = reciprocal[a], give = slack * vitral::absolute(r);
@@ -227,6 +231,7 @@ Found collect(const KdView& tree, const LightFrame& frame, const Sweep& sweep, G
         t1 = vitral::least(last, t1);
       }
     }
+    counts.group_node(), counts.group_leaf();
     if (++leaves > budget.leaves) return Found::too_many;
     const KdNode& leaf = tree.nodes[node];
     for (uint32_t i = 0; i < count(leaf); ++i) {
@@ -236,6 +241,7 @@ Found collect(const KdView& tree, const LightFrame& frame, const Sweep& sweep, G
       if (glass == GlassRule::passes && (tree.triangles[id].flags & kGlassTriangle)) continue;
       ids[pending++] = id;
       if (pending < kLanes) continue;
+      counts.group_test(pending);
       if (add_casters(tree, frame, sweep, ids, pending, out) == Cover::all) return Found::darkness;
       if (out.count > budget.casters) return Found::too_many;
       pending = 0;
@@ -244,6 +250,7 @@ Found collect(const KdView& tree, const LightFrame& frame, const Sweep& sweep, G
     --waiting;
     node = stack[waiting].node, t0 = stack[waiting].t0, t1 = stack[waiting].t1;
   }
+  counts.group_test(pending);
   if (pending > 0 && add_casters(tree, frame, sweep, ids, pending, out) == Cover::all) return Found::darkness;
   return Found::casters;
 }
@@ -304,7 +311,12 @@ Verdict judge(const Casters& casters, int i, const ShadowBlock& block, uint64_t 
   return v;
 }
 
-void test_block(const KdView& tree, const Casters& casters, const RayPacket& rays, ShadowBlock& block) {
+template <class Counts>
+void test_block(const KdView& tree, const Casters& casters, const RayPacket& rays, ShadowBlock& block,
+                Counts counts) {
+  uint64_t tested = 0, mark = counts.mark();
+  counts.group_test(casters.count);
+  counts.share(mark, 1, [&](int) { return block.lanes; });
   Shears shears;
   bool sheared = false;
   uint64_t open = block.lanes;
@@ -314,6 +326,8 @@ void test_block(const KdView& tree, const Casters& casters, const RayPacket& ray
     if (cover == Cover::all) open = 0;
     for (; wanted != 0 && open != 0; wanted &= wanted - 1) {
       const int i = first + __builtin_ctz(wanted);
+      counts.test(open);
+      tested |= open;
       const Verdict v = judge(casters, i, block, open);
       open &= ~v.blocked;
       if (v.unsure == 0) continue;
@@ -321,9 +335,11 @@ void test_block(const KdView& tree, const Casters& casters, const RayPacket& ray
         derive_shears(rays, shears);
         sheared = true;
       }
+      counts.test(v.unsure);
       open &= ~test_any(tree, rays, shears, v.unsure, casters.id[i]);
     }
   }
+  counts.trace(tested);
   block.blocked = block.lanes & ~open;
 }
 
@@ -412,7 +428,10 @@ struct Occluders {
   int count;
 };
 
-bool covers(const KdView& tree, const LightFrame& frame, const Sweep& sweep, uint32_t id, Casters& scratch) {
+template <class Counts>
+bool covers(const KdView& tree, const LightFrame& frame, const Sweep& sweep, uint32_t id, Casters& scratch,
+            Counts counts) {
+  counts.group_test(1);
   scratch.count = 0;
   return add_casters(tree, frame, sweep, &id, 1, scratch) == Cover::all;
 }
@@ -421,18 +440,19 @@ bool covers(const KdView& tree, const LightFrame& frame, const Sweep& sweep, uin
 // if a ray of the sweep followed back from behind the scene meets one, of that: the outermost are often
 // walls and roofs.
 enum class Probe { dark, unknown };
+template <class Counts>
 Probe probe(const KdView& tree, const LightFrame& frame, const Sweep& sweep, GlassRule glass, const Ray& ray,
-            Occluders& occluders, Casters& scratch) {
+            Occluders& occluders, Casters& scratch, Counts counts) {
   for (int i = 0; i < occluders.count; ++i) {
-    if (covers(tree, frame, sweep, occluders.id[i], scratch)) return Probe::dark;
+    if (covers(tree, frame, sweep, occluders.id[i], scratch, counts)) return Probe::dark;
   }
   const float far = exit_distance(tree, frame, ray.origin);
   if (!(far < kInfinity)) return Probe::unknown;
-  const Hit hit = walk_closest(tree, {ray.origin + ray.direction * far, 0, -ray.direction, far});
+  const Hit hit = counts.group_walk(tree, {ray.origin + ray.direction * far, 0, -ray.direction, far});
   if (hit.triangle == kNoTriangle) return Probe::unknown;
   if (glass == GlassRule::passes && (tree.triangles[hit.triangle].flags & kGlassTriangle))
     return Probe::unknown;
-  if (!covers(tree, frame, sweep, hit.triangle, scratch)) return Probe::unknown;
+  if (!covers(tree, frame, sweep, hit.triangle, scratch, counts)) return Probe::unknown;
   for (int i = Occluders::kMost - 1; i > 0; --i) occluders.id[i] = occluders.id[i - 1];
   occluders.id[0] = hit.triangle;
   occluders.count = occluders.count < Occluders::kMost ? occluders.count + 1 : Occluders::kMost;
@@ -446,8 +466,9 @@ bool is_narrow(const KdView& tree, const Sweep& sweep) {
 
 // Some blocks with one list of casters; where that grows too long, a quarter of them at a time; and
 // where a single block still has too many, its rays walk the tree.
+template <class Counts>
 void trace_group(const KdView& tree, const LightFrame& frame, GlassRule glass, const RayPacket* rays,
-                 ShadowBlock* blocks, int count, Occluders& occluders) {
+                 ShadowBlock* blocks, int count, Occluders& occluders, Counts counts) {
   int first = 0;
   while (first < count && blocks[first].lanes == 0) ++first;
   if (first == count) return;
@@ -456,40 +477,42 @@ void trace_group(const KdView& tree, const LightFrame& frame, GlassRule glass, c
     if (blocks[i].lanes != 0) sweep = join_sweeps(sweep, blocks[i].sweep);
   }
   Casters casters;
+  const uint64_t mark = counts.mark();
   Found found = Found::too_many;
   if (is_narrow(tree, sweep)) {
     const Ray ray = ray_of(rays[first], __builtin_ctzll(blocks[first].lanes));
     const Budget& budget = kBudgets[count > 4 ? 2 : count > 1 ? 1 : 0];
-    found = probe(tree, frame, sweep, glass, ray, occluders, casters) == Probe::dark
+    found = probe(tree, frame, sweep, glass, ray, occluders, casters, counts) == Probe::dark
                 ? Found::darkness
-                : collect(tree, frame, sweep, glass, budget, casters);
+                : collect_casters(tree, frame, sweep, glass, budget, casters, counts);
   }
+  counts.share(mark, count, [&](int i) { return blocks[i].lanes; });
   switch (found) {
     case Found::darkness:
       for (int i = 0; i < count; ++i) blocks[i].blocked = blocks[i].lanes;
       return;
     case Found::casters:
       for (int i = 0; i < count; ++i) {
-        if (blocks[i].lanes != 0) test_block(tree, casters, rays[i], blocks[i]);
+        if (blocks[i].lanes != 0) test_block(tree, casters, rays[i], blocks[i], counts.of(i));
       }
       return;
     case Found::too_many:
       break;
   }
   if (count == 1) {
-    blocks->blocked = trace_any(tree, *rays, glass);
+    blocks->blocked = trace_any_from(tree, 0, *rays, glass, counts);
     return;
   }
   const int part = count > 4 ? 4 : 1;
   for (int i = 0; i < count; i += part) {
-    trace_group(tree, frame, glass, rays + i, blocks + i, count - i < part ? count - i : part, occluders);
+    trace_group(tree, frame, glass, rays + i, blocks + i, count - i < part ? count - i : part, occluders,
+                counts.of(i));
   }
 }
 
-}  // namespace
-
-void trace_shadows(const KdView& tree, const Light& light, GlassRule glass, const PointPacket* const* points,
-                   int count, ShadowAnswer* out) {
+template <class Counts>
+void find_blocked(const KdView& tree, const Light& light, GlassRule glass, const PointPacket* const* points,
+                  int count, ShadowAnswer* out, Counts counts) {
   RayPacket rays[kMaxShadowBlocks];
   for (int i = 0; i < count; ++i) {
     shadow_rays(light, *points[i], rays[i]);
@@ -497,7 +520,7 @@ void trace_shadows(const KdView& tree, const Light& light, GlassRule glass, cons
   }
   if (light.kind != Light::Kind::directional) {
     for (int i = 0; i < count; ++i) {
-      if (rays[i].live != 0) out[i].blocked = trace_any(tree, rays[i], glass);
+      if (rays[i].live != 0) out[i].blocked = trace_any_from(tree, 0, rays[i], glass, counts.of(i));
     }
     return;
   }
@@ -516,9 +539,27 @@ void trace_shadows(const KdView& tree, const Light& light, GlassRule glass, cons
     if (blocks[i].lanes != 0) enter_frame(frame, rays[i], blocks[i]);
   }
   Occluders occluders{{}, 0};
-  trace_group(tree, frame, glass, rays, blocks, count, occluders);
+  trace_group(tree, frame, glass, rays, blocks, count, occluders, counts);
   for (int i = 0; i < count; ++i) out[i].blocked = blocks[i].blocked;
 }
+
+}  // namespace
+
+#ifdef VITRAL_COUNTED
+
+void count_shadows(const KdView& tree, const Light& light, GlassRule glass, const PointPacket* const* points,
+                   int count, ShadowAnswer* out, const WorkCounts& work) {
+  find_blocked(tree, light, glass, points, count, out, Counting{work.totals, work.work});
+}
+
+#else
+
+void trace_shadows(const KdView& tree, const Light& light, GlassRule glass, const PointPacket* const* points,
+                   int count, ShadowAnswer* out) {
+  find_blocked(tree, light, glass, points, count, out, NoCounts{});
+}
+
+#endif
 
 }  // namespace VITRAL_ISA
 }  // namespace vitral

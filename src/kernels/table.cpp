@@ -11,7 +11,8 @@ namespace VITRAL_ISA {
 const Kernels kTable = {
     VITRAL_NAME(VITRAL_ISA), kLanes,      primary_rays,      trace_closest, trace_any,
     surface_points,          mirror_rays, shadow_rays,       trace_shadows, ambient_occlusion,
-    ambient_blocks,          fill_tile,   intersect_visible,
+    ambient_blocks,          fill_tile,   intersect_visible, count_closest, count_shadows,
+    count_ambient,
 };
 
 }  // namespace VITRAL_ISA

@@ -18,6 +18,11 @@ void ambient_occlusion(const KdView& tree, const PointPacket& points, const Ambi
                        uint32_t* free_rays);
 void ambient_blocks(const KdView& tree, const PointPacket* const* points, int count,
                     const AmbientSettings& settings, FreeRays* out);
+void count_closest(const KdView& tree, const RayPacket& rays, HitPacket& hits, const WorkCounts& out);
+void count_shadows(const KdView& tree, const Light& light, GlassRule glass, const PointPacket* const* points,
+                   int count, ShadowAnswer* out, const WorkCounts& work);
+void count_ambient(const KdView& tree, const PointPacket* const* points, int count,
+                   const AmbientSettings& settings, FreeRays* out, const WorkCounts& work);
 void fill_tile(const RasterView& view, int tile_x, int tile_y, TileVisibility& out);
 void intersect_visible(const Pinhole& camera, const KdTriangle* triangles, int x, int y,
                        const uint32_t* numbers, HitPacket& hits);

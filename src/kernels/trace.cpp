@@ -8,6 +8,7 @@
 // Every ray's answer is a function of the ray and the triangles alone: the same bits as walk.cpp.
 #include "kdtree/kdtree.h"
 #include "kernels/candidates.h"
+#include "kernels/counts.h"
 #include "kernels/meet.h"
 #include "kernels/tables.h"
 #include "simd/simd.h"
@@ -110,9 +111,9 @@ inline Wanted cut_intervals(uint64_t lanes, float split, const float* origin, co
 // negative). Returns the lanes that met something.
 //
 // Where the bounds of all rays agree that none wants one of the children, no ray is looked at.
-template <Query query>
+template <Query query, class Counts>
 uint64_t walk_octant(const KdView& tree, const RayPacket& rays, const Derived& d, uint64_t lanes, int octant,
-                     uint32_t node, GlassRule glass, HitPacket* hits) {
+                     uint32_t node, GlassRule glass, HitPacket* hits, Counts counts) {
   const float* origin[3] = {rays.ox, rays.oy, rays.oz};
   const float* reciprocal[3] = {d.rx, d.ry, d.rz};
   Viewer viewer;
@@ -138,6 +139,7 @@ uint64_t walk_octant(const KdView& tree, const RayPacket& rays, const Derived& d
   uint64_t met = 0;
   for (;;) {
     while (!is_leaf(tree.nodes[node])) {
+      counts.node(lanes);
       const KdNode& n = tree.nodes[node];
       const int a = axis(n);
       const uint32_t negative = static_cast<uint32_t>(octant >> a) & 1u;
@@ -173,12 +175,14 @@ uint64_t walk_octant(const KdView& tree, const RayPacket& rays, const Derived& d
       }
     }
 
+    counts.leaf(lanes);
     const KdNode& leaf = tree.nodes[node];
     const uint32_t* ids = tree.references + first_reference(leaf);
     for (uint32_t i = 1; i < count(leaf); ++i) __builtin_prefetch(&tree.triangles[ids[i]]);
     for (uint32_t i = 0; i < count(leaf) && lanes != 0; ++i) {
       const uint32_t id = ids[i];
       if (glass == GlassRule::passes && (tree.triangles[id].flags & kGlassTriangle)) continue;
+      counts.test(lanes);
       const uint64_t here = same_axis
                                 ? test_triangle<query, true>(tree, rays, d.shears, viewer, lanes, id, hits)
                                 : test_triangle<query, false>(tree, rays, d.shears, viewer, lanes, id, hits);
@@ -209,8 +213,9 @@ uint64_t walk_octant(const KdView& tree, const RayPacket& rays, const Derived& d
   }
 }
 
-template <Query query>
-uint64_t trace(const KdView& tree, const RayPacket& rays, uint32_t node, GlassRule glass, HitPacket* hits) {
+template <Query query, class Counts>
+uint64_t trace(const KdView& tree, const RayPacket& rays, uint32_t node, GlassRule glass, HitPacket* hits,
+               Counts counts) {
   Derived d;
   derive_shears(rays, d.shears);
   derive_intervals(tree, rays, d);
@@ -223,34 +228,56 @@ uint64_t trace(const KdView& tree, const RayPacket& rays, uint32_t node, GlassRu
     negative[2] |= static_cast<uint64_t>(bits(load(d.rz + g) < Float(0.0f))) << g;
   }
   lanes &= d.shears.traceable;
+  counts.trace(lanes);
   uint64_t met = 0;
   for (int octant = 0; octant < 8; ++octant) {
     uint64_t mine = lanes;
     for (int a = 0; a < 3; ++a) mine &= octant >> a & 1 ? negative[a] : ~negative[a];
-    if (mine != 0) met |= walk_octant<query>(tree, rays, d, mine, octant, node, glass, hits);
+    if (mine != 0) met |= walk_octant<query>(tree, rays, d, mine, octant, node, glass, hits, counts);
   }
   return met;
 }
 
-}  // namespace
-
-void trace_closest(const KdView& tree, const RayPacket& rays, HitPacket& hits) {
+void clear(HitPacket& hits) {
   for (int g = 0; g < kPacketSize; g += kLanes) {
     store(hits.t + g, Float(kInfinity));
     store(hits.u + g, Float(0.0f));
     store(hits.v + g, Float(0.0f));
     store(hits.triangle + g, Uint(kNoTriangle));
   }
-  trace<Query::closest>(tree, rays, 0, GlassRule::blocks, &hits);
+}
+
+}  // namespace
+
+#ifdef VITRAL_COUNTED
+
+void count_closest(const KdView& tree, const RayPacket& rays, HitPacket& hits, const WorkCounts& out) {
+  clear(hits);
+  trace<Query::closest>(tree, rays, 0, GlassRule::blocks, &hits, Counting{out.totals, out.work});
+}
+
+uint64_t trace_any_from(const KdView& tree, uint32_t node, const RayPacket& rays, GlassRule glass,
+                        Counting counts) {
+  return trace<Query::any>(tree, rays, node, glass, nullptr, counts);
+}
+
+#else
+
+void trace_closest(const KdView& tree, const RayPacket& rays, HitPacket& hits) {
+  clear(hits);
+  trace<Query::closest>(tree, rays, 0, GlassRule::blocks, &hits, NoCounts{});
 }
 
 uint64_t trace_any(const KdView& tree, const RayPacket& rays, GlassRule glass) {
-  return trace<Query::any>(tree, rays, 0, glass, nullptr);
+  return trace<Query::any>(tree, rays, 0, glass, nullptr, NoCounts{});
 }
 
-uint64_t trace_any_from(const KdView& tree, uint32_t node, const RayPacket& rays, GlassRule glass) {
-  return trace<Query::any>(tree, rays, node, glass, nullptr);
+uint64_t trace_any_from(const KdView& tree, uint32_t node, const RayPacket& rays, GlassRule glass,
+                        NoCounts counts) {
+  return trace<Query::any>(tree, rays, node, glass, nullptr, counts);
 }
+
+#endif
 
 }  // namespace VITRAL_ISA
 }  // namespace vitral

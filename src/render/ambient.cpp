@@ -5,10 +5,10 @@
 namespace vitral {
 
 void count_free_rays(const FrameContext& frame, const PointPacket* const* points, int count, PassTally& tally,
-                     FreeRays* out) {
+                     FreeRays* out, LaneWork* work) {
   const PassTimer timer(tally, Pass::ao);
   const AmbientSettings settings{frame.ao_strata, frame.settings.ao_distance, frame.sample_step};
-  frame.kernels.ambient_blocks(frame.accelerator.view, points, count, settings, out);
+  run_ambient(frame, points, count, settings, tally, out, work);
   for (int i = 0; i < count; ++i) {
     tally.rays[static_cast<size_t>(Pass::ao)] +=
         static_cast<uint64_t>(__builtin_popcountll(points[i]->live)) *

@@ -12,6 +12,7 @@ bool is_scalar(AovKind kind) {
     case AovKind::primitive:
     case AovKind::shadow:
     case AovKind::ao:
+    case AovKind::cost:
       return true;
     default:
       return false;

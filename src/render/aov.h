@@ -20,7 +20,8 @@ enum class AovKind {
   shadow,
   ao,
   reflection,
-  refraction
+  refraction,
+  cost
 };
 
 // Those that were asked for; null where not.

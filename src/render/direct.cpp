@@ -3,6 +3,8 @@
 #include "math/elementary.h"
 #include "render/frame.h"
 
+#include <algorithm>
+
 namespace vitral {
 namespace {
 
@@ -62,8 +64,10 @@ void light_surfaces(const FrameContext& frame, const SurfacePacket* const* surfa
   const PointPacket* points[kTileBlocks] = {};
   for (int i = 0; i < count; ++i) points[i] = &surfaces[i]->points;
   FreeRays free_rays[kTileBlocks];
+  LaneWork work[kTileBlocks];
+  if (frame.count == Count::pixels) std::fill_n(work, count, LaneWork{});
   const bool occlusion = frame.settings.effects.ambient_occlusion;
-  if (occlusion) count_free_rays(frame, points, count, tally, free_rays);
+  if (occlusion) count_free_rays(frame, points, count, tally, free_rays, work);
   ColorPacket darkening[kTileBlocks];
   for (int i = 0; i < count; ++i) {
     const SurfacePacket& s = *surfaces[i];
@@ -80,10 +84,10 @@ void light_surfaces(const FrameContext& frame, const SurfacePacket* const* surfa
 
   for (const Light& light : scene.lights) {
     ShadowAnswer shadows[kTileBlocks];
-    find_shadows(frame, light, points, count, tally, shadows);
+    find_shadows(frame, light, points, count, tally, shadows, work);
     for (int i = 0; i < count; ++i) {
       ColorPacket visibility;
-      light_visibility(frame, light, *points[i], shadows[i], tally, visibility);
+      light_visibility(frame, light, *points[i], shadows[i], tally, visibility, work + i);
       const PassTimer timer(tally, Pass::shade);
       if (&light == &scene.lights.front()) {
         for (int lane = 0; lane < kPacketSize; ++lane)
@@ -96,6 +100,7 @@ void light_surfaces(const FrameContext& frame, const SurfacePacket* const* surfa
   for (int i = 0; i < count; ++i) {
     const SurfacePacket& s = *surfaces[i];
     ColorPacket& light = out[i].light;
+    if (frame.count == Count::pixels) out[i].detail.work = work[i];
     for (uint64_t left = s.points.live; left != 0; left &= left - 1) {
       const int lane = __builtin_ctzll(left);
       if (report) light.color[lane] *= darkening[i].color[lane] * out[i].detail.ao[lane];

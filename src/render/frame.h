@@ -14,6 +14,10 @@
 
 namespace vitral {
 
+// What is counted of the tracer's work: nothing, sums over the frame, or also how much of it each pixel
+// asked for.
+enum class Count { nothing, totals, pixels };
+
 // Read-only while tiles are rendered.
 struct FrameContext {
   const Scene& scene;
@@ -28,6 +32,7 @@ struct FrameContext {
                                        // on weighs no more than what came, so no pixel has more paths
   int ao_strata;                       // n of n x n samples
   std::vector<float> ao_of_free_rays;  // (k / N)^exponent for k = 0..N
+  Count count = Count::nothing;
 };
 
 // Throws UsageError when the instruction set is not there. Refers to its arguments; `raster` is null.
@@ -42,6 +47,7 @@ inline constexpr std::array<const char*, kPasses> kPassNames = {
 struct PassTally {
   std::array<double, kPasses> seconds{};
   std::array<uint64_t, kPasses> rays{};
+  std::array<TraversalCounts, kPasses> traversal{};  // but rays_culled
 };
 
 // Adds the time from its making to its end to a pass.
@@ -80,7 +86,20 @@ struct ColorPacket {
 struct LightDetail {
   float shadow[kPacketSize];  // luminance of the first light's visibility: 1 lit, 0 blocked
   float ao[kPacketSize];      // 0..1
+  LaneWork work;              // of the tracer; only with Count::pixels
 };
+
+// count.cpp: what the settings ask to be counted.
+Count what_to_count(const Settings& settings);
+
+// count.cpp: the kernels that trace, counting or not. With Count::pixels what each lane asked for is added
+// to `work`, one entry a packet, which is not looked at otherwise.
+void run_closest(const FrameContext& frame, Pass pass, const RayPacket& rays, PassTally& tally,
+                 HitPacket& hits, LaneWork* work);
+void run_shadows(const FrameContext& frame, const Light& light, const PointPacket* const* points, int count,
+                 PassTally& tally, ShadowAnswer* out, LaneWork* work);
+void run_ambient(const FrameContext& frame, const PointPacket* const* points, int count,
+                 const AmbientSettings& settings, PassTally& tally, FreeRays* out, LaneWork* work);
 
 // primary.cpp: the scene's triangles on the screen, in bins. Throws Interrupted.
 RasterView setup_raster(const FrameContext& frame, const Rectangle& crop, ThreadPool& pool,
@@ -93,7 +112,7 @@ void rasterize_tile(const FrameContext& frame, int tile_x, int tile_y, PassTally
                     TileVisibility& visibility);
 bool is_background(const FrameContext& frame, const TileVisibility& visibility, int block);
 void primary_hits(const FrameContext& frame, const TileVisibility& visibility, int block, int x, int y,
-                  uint64_t lanes, PassTally& tally, RayPacket& rays, HitPacket& hits);
+                  uint64_t lanes, PassTally& tally, RayPacket& rays, HitPacket& hits, LaneWork* work);
 
 // resolve.cpp: encodes linear colours; counts and paints red those that are not finite.
 Rgb8 encode_pixel(Vec3& color, uint64_t& not_finite);
@@ -102,14 +121,14 @@ Rgb8 encode_pixel(Vec3& color, uint64_t& not_finite);
 // kTileBlocks packets that lie near each other; and then how much of it arrives at each point, per colour
 // channel: 1 lit (or facing away), 0 blocked, between for glass.
 void find_shadows(const FrameContext& frame, const Light& light, const PointPacket* const* points, int count,
-                  PassTally& tally, ShadowAnswer* out);
+                  PassTally& tally, ShadowAnswer* out, LaneWork* work);
 void light_visibility(const FrameContext& frame, const Light& light, const PointPacket& points,
-                      const ShadowAnswer& answer, PassTally& tally, ColorPacket& visibility);
+                      const ShadowAnswer& answer, PassTally& tally, ColorPacket& visibility, LaneWork* work);
 
 // ambient.cpp: how many of the N ambient rays of each live point are free, for up to kTileBlocks packets
 // that lie near each other; and (free/N)^exponent, 1 at lanes that are not live.
 void count_free_rays(const FrameContext& frame, const PointPacket* const* points, int count, PassTally& tally,
-                     FreeRays* out);
+                     FreeRays* out, LaneWork* work);
 void ambient_visibility(const FrameContext& frame, const PointPacket& points, const FreeRays& free_rays,
                         float* visibility);
 
@@ -146,6 +165,7 @@ struct PathSums {
   Vec3* pixels;      // of the tile; reflection and refraction together
   Vec3* reflection;  // the part whose first ray was a reflection; may be null
   Vec3* refraction;  // may be null
+  float* cost;       // nodes and tests; null unless Count::pixels
 };
 struct PathScratch {
   std::vector<Path> current, next, sorted;

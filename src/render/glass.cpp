@@ -113,6 +113,7 @@ uint64_t trace_packet(const FrameContext& frame, const Path* paths, int count, s
   RayPacket rays;
   HitPacket hits;
   SurfacePacket surfaces;
+  LaneWork work;
   rays.tmin = 0;
   rays.live = count == kPacketSize ? ~0ull : (1ull << count) - 1;
   for (int lane = 0; lane < kPacketSize; ++lane) {
@@ -123,8 +124,9 @@ uint64_t trace_packet(const FrameContext& frame, const Path* paths, int count, s
   const Pass pass = paths[0].kind == PathKind::reflection ? Pass::reflection : Pass::refraction;
   {
     const PassTimer timer(tally, pass);
+    if (sums.cost) work = {};
     count_rays(tally, pass, rays.live);
-    frame.kernels.trace_closest(frame.accelerator.view, rays, hits);
+    run_closest(frame, pass, rays, tally, hits, &work);
   }
   {
     const PassTimer timer(tally, Pass::shade);
@@ -132,16 +134,18 @@ uint64_t trace_packet(const FrameContext& frame, const Path* paths, int count, s
   }
   Lit lit;
   const SurfacePacket* const one = &surfaces;
-  light_surfaces(frame, &one, 1, tally, &lit);
+  if (surfaces.points.live != 0) light_surfaces(frame, &one, 1, tally, &lit);
 
   const PassTimer timer(tally, pass);
   for (int lane = 0; lane < count; ++lane) {
     const Path& p = paths[lane];
-    const Vec3 seen = surfaces.points.live >> lane & 1 ? lit.light.color[lane] : frame.scene.background;
+    const bool met = surfaces.points.live >> lane & 1;
+    const Vec3 seen = met ? lit.light.color[lane] : frame.scene.background;
     const Vec3 add = p.weight * seen;
     sums.pixels[p.pixel] += add;
     Vec3* part = p.root == PathKind::reflection ? sums.reflection : sums.refraction;
     if (part) part[p.pixel] += add;
+    if (sums.cost) sums.cost[p.pixel] += work.work[lane] + (met ? lit.detail.work.work[lane] : 0.0f);
   }
   spawn_paths(frame, surfaces, paths, next);
   return surfaces.points.live;

@@ -23,7 +23,7 @@ void see_tile(const Picture& p, Block* blocks, Detail detail, Scratch& s) {
     if (b.lanes == 0 || is_background(frame, s.visibility, i)) continue;
     RayPacket rays;
     HitPacket hits;
-    primary_hits(frame, s.visibility, i, b.x, b.y, b.lanes, s.tally, rays, hits);
+    primary_hits(frame, s.visibility, i, b.x, b.y, b.lanes, s.tally, rays, hits, nullptr);
     if (detail == Detail::points) {
       frame.kernels.surface_points(frame.accelerator.triangles.data(), rays, hits, frame.offset,
                                    b.surfaces.points);
@@ -78,13 +78,13 @@ using PointsBody = std::function<void(const PointPacket* const*, int, Scratch&)>
 uint64_t trace_light(const FrameContext& frame, const Light& light, const PointPacket* const* points,
                      int count, PassTally& tally) {
   ShadowAnswer answers[kTileBlocks];
-  find_shadows(frame, light, points, count, tally, answers);
+  find_shadows(frame, light, points, count, tally, answers, nullptr);
   uint64_t blocked = 0;
   for (int i = 0; i < count; ++i) {
     blocked += count_of(answers[i].blocked);
     if (!frame.accelerator.has_glass) continue;
     ColorPacket visibility;
-    light_visibility(frame, light, *points[i], answers[i], tally, visibility);
+    light_visibility(frame, light, *points[i], answers[i], tally, visibility, nullptr);
   }
   return blocked;
 }
@@ -98,7 +98,7 @@ void trace_shadows(const FrameContext& frame, const PointPacket* const* points, 
 
 void trace_ambient(const FrameContext& frame, const PointPacket* const* points, int count, Scratch& s) {
   FreeRays free_rays[kTileBlocks];
-  count_free_rays(frame, points, count, s.tally, free_rays);
+  count_free_rays(frame, points, count, s.tally, free_rays, nullptr);
   for (int i = 0; i < count; ++i) {
     for (uint64_t left = points[i]->live; left != 0; left &= left - 1)
       s.counts.free += free_rays[i].count[__builtin_ctzll(left)];
@@ -183,7 +183,7 @@ PassTimes measure_paths(Picture& p, const FrameContext& frame, const char* name,
         begin_paths(surfaces.points, blocks[i].x - blocks->x, blocks[i].y - blocks->y, camera_paths);
         spawn_paths(frame, surfaces, camera_paths, s.paths.current);
       }
-      s.counts.hits += trace_paths(frame, s.paths, s.tally, {s.color.data(), nullptr, nullptr});
+      s.counts.hits += trace_paths(frame, s.paths, s.tally, {s.color.data(), nullptr, nullptr, nullptr});
     });
   });
 }

@@ -35,7 +35,7 @@ bool is_background(const FrameContext& frame, const TileVisibility& visibility, 
 }
 
 void primary_hits(const FrameContext& frame, const TileVisibility& visibility, int block, int x, int y,
-                  uint64_t lanes, PassTally& tally, RayPacket& rays, HitPacket& hits) {
+                  uint64_t lanes, PassTally& tally, RayPacket& rays, HitPacket& hits, LaneWork* work) {
   const PassTimer timer(tally, Pass::raster);
   frame.kernels.primary_rays(frame.camera, x, y, rays);
   rays.live = lanes;
@@ -44,7 +44,7 @@ void primary_hits(const FrameContext& frame, const TileVisibility& visibility, i
                                     visibility.triangle + block * kPacketSize, hits);
   } else {
     count_rays(tally, Pass::raster, lanes);
-    frame.kernels.trace_closest(frame.accelerator.view, rays, hits);
+    run_closest(frame, Pass::raster, rays, tally, hits, work);
   }
 }
 

@@ -34,17 +34,21 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 void collect_stats(const FrameContext& frame, const std::vector<Worker>& workers, Stats& stats) {
   const KdTree& tree = frame.accelerator.all;
   stats.isa = frame.kernels.isa;
+  stats.counted = frame.count != Count::nothing;
   stats.threads = static_cast<int>(workers.size());
   stats.triangles = frame.scene.mesh.triangles.size();
   stats.dropped_triangles = frame.scene.dropped_triangles;
   stats.tree_nodes = tree.nodes.size();
   stats.tree_bytes = tree_bytes(tree);
   for (size_t p = 0; p < kPasses; ++p) {
-    PassStats total{kPassNames[p], 0, 0};
+    PassStats total{kPassNames[p], 0, 0, {}};
     for (const Worker& w : workers) {
       total.seconds += w.tally.seconds[p];
       total.rays += w.tally.rays[p];
+      add(total.traversal, w.tally.traversal[p]);
     }
+    if (stats.counted) total.traversal.rays_culled = total.rays - total.traversal.rays_traced;
+    add(stats.traversal, total.traversal);
     stats.passes.push_back(total);
   }
   for (const Worker& w : workers) {
@@ -117,7 +121,8 @@ FrameContext make_context(const Scene& scene, const Accelerator& accelerator, co
                      nullptr,
                      0,
                      0,
-                     {}};
+                     {},
+                     what_to_count(settings)};
   frame.least_importance = greatest(settings.min_importance, 1.0f / 4096);
   frame.ao_strata = static_cast<int>(square_root(static_cast<float>(settings.ao_samples)) + 0.5f);
   for (int k = 0; k <= settings.ao_samples; ++k) {

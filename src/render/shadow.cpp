@@ -6,10 +6,11 @@ namespace {
 
 // What is left of the light behind all sheets of glass on the ray, nearest first. Sheets at the very
 // same t, as at the edge that two triangles of a sheet share, count once.
-Vec3 glass_tint(const FrameContext& frame, Ray ray) {
+Vec3 glass_tint(const FrameContext& frame, Ray ray, TraversalCounts& counts) {
   Vec3 tint{1, 1, 1};
   for (;;) {
-    const Hit hit = walk_closest(frame.accelerator.glass_view, ray);
+    const KdView& tree = frame.accelerator.glass_view;
+    const Hit hit = frame.count == Count::nothing ? walk_closest(tree, ray) : walk_closest(tree, ray, counts);
     if (hit.triangle == kNoTriangle) return tint;
     const Material& m = frame.scene.materials[frame.scene.mesh.triangle_material[hit.triangle]];
     tint *= m.optics == Optics::dissolve ? Vec3{1, 1, 1} * (1 - m.opacity) : m.transmission;
@@ -21,16 +22,16 @@ Vec3 glass_tint(const FrameContext& frame, Ray ray) {
 }  // namespace
 
 void find_shadows(const FrameContext& frame, const Light& light, const PointPacket* const* points, int count,
-                  PassTally& tally, ShadowAnswer* out) {
+                  PassTally& tally, ShadowAnswer* out, LaneWork* work) {
   for (int i = 0; i < count; ++i) out[i] = {0, 0};
   if (!frame.settings.effects.shadows) return;
   const PassTimer timer(tally, Pass::shadows);
-  frame.kernels.trace_shadows(frame.accelerator.view, light, GlassRule::passes, points, count, out);
+  run_shadows(frame, light, points, count, tally, out, work);
   for (int i = 0; i < count; ++i) count_rays(tally, Pass::shadows, out[i].facing);
 }
 
 void light_visibility(const FrameContext& frame, const Light& light, const PointPacket& points,
-                      const ShadowAnswer& answer, PassTally& tally, ColorPacket& visibility) {
+                      const ShadowAnswer& answer, PassTally& tally, ColorPacket& visibility, LaneWork* work) {
   for (Vec3& v : visibility.color) v = {1, 1, 1};
   for (uint64_t left = answer.blocked; left != 0; left &= left - 1)
     visibility.color[__builtin_ctzll(left)] = {0, 0, 0};
@@ -39,9 +40,12 @@ void light_visibility(const FrameContext& frame, const Light& light, const Point
   const PassTimer timer(tally, Pass::shadows);
   RayPacket rays;
   frame.kernels.shadow_rays(light, points, rays);
+  TraversalCounts& counts = tally.traversal[static_cast<size_t>(Pass::shadows)];
   for (uint64_t left = lit; left != 0; left &= left - 1) {
     const int lane = __builtin_ctzll(left);
-    visibility.color[lane] = glass_tint(frame, ray_of(rays, lane));
+    const uint64_t before = work_of(counts);
+    visibility.color[lane] = glass_tint(frame, ray_of(rays, lane), counts);
+    if (frame.count == Count::pixels) work->work[lane] += static_cast<float>(work_of(counts) - before);
   }
 }
 

@@ -51,8 +51,14 @@ void resolve_tile(const Rectangle& crop, int tile_x, int tile_y, Worker& worker,
         aov->pixels.pixels[there] = worker.reflection[here];
       if (Aov* aov = target(targets, AovKind::refraction))
         aov->pixels.pixels[there] = worker.refraction[here];
+      if (Aov* aov = target(targets, AovKind::cost)) aov->pixels.pixels[there] = {worker.cost[here], 0, 0};
     }
   }
+}
+
+// Where a lane of the block at (x, y) of a tile lies in the tile.
+size_t tile_pixel(int x, int y, int lane) {
+  return static_cast<size_t>((y + lane / kBlockSide) * kTileSide + x + lane % kBlockSide);
 }
 
 // What the pixels of one block see, with the keys of their random numbers.
@@ -60,7 +66,13 @@ void see_block(const FrameContext& frame, Worker& worker, int block, int x, int 
                SurfacePacket& surfaces) {
   RayPacket rays;
   HitPacket hits;
-  primary_hits(frame, worker.visibility, block, x, y, lanes, worker.tally, rays, hits);
+  LaneWork work;
+  if (frame.count == Count::pixels) work = {};
+  primary_hits(frame, worker.visibility, block, x, y, lanes, worker.tally, rays, hits, &work);
+  if (frame.count == Count::pixels) {
+    for (int lane = 0; lane < kPacketSize; ++lane)
+      worker.cost[tile_pixel(x % kTileSide, y % kTileSide, lane)] += work.work[lane];
+  }
   const PassTimer timer(worker.tally, Pass::shade);
   make_surfaces(frame, rays, hits, surfaces);
   for (int lane = 0; lane < kPacketSize; ++lane) {
@@ -73,11 +85,15 @@ void see_block(const FrameContext& frame, Worker& worker, int block, int x, int 
 void render_tile(const FrameContext& frame, const Rectangle& crop, int tile_x, int tile_y, Worker& worker,
                  Frame& out, const AovTargets& targets) {
   worker.color.assign(kTilePixels, frame.scene.background);
-  PathSums sums{worker.color.data(), nullptr, nullptr};
+  PathSums sums{worker.color.data(), nullptr, nullptr, nullptr};
   if (targets.any) {
     worker.reflection.assign(kTilePixels, Vec3{0, 0, 0});
     worker.refraction.assign(kTilePixels, Vec3{0, 0, 0});
-    sums = {worker.color.data(), worker.reflection.data(), worker.refraction.data()};
+    sums = {worker.color.data(), worker.reflection.data(), worker.refraction.data(), nullptr};
+  }
+  if (frame.count == Count::pixels) {
+    worker.cost.assign(kTilePixels, 0);
+    sums.cost = worker.cost.data();
   }
   worker.paths.current.clear();
   // What the tile's blocks see, those that see anything.
@@ -109,6 +125,7 @@ void render_tile(const FrameContext& frame, const Rectangle& crop, int tile_x, i
       const int lane = __builtin_ctzll(left);
       ++worker.covered;
       worker.color[camera_paths[lane].pixel] = lit[i].light.color[lane];
+      if (sums.cost) sums.cost[camera_paths[lane].pixel] += lit[i].detail.work.work[lane];
       if (targets.any)
         write_aovs(targets, surfaces, lit[i].detail, lane,
                    frame_pixel(crop, corner_x[i] + lane % kBlockSide, corner_y[i] + lane / kBlockSide));

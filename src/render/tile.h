@@ -14,6 +14,7 @@ struct Worker {
   PathScratch paths;
   std::vector<SurfacePacket> surfaces;              // of the tile's blocks
   std::vector<Vec3> color, reflection, refraction;  // of the tile
+  std::vector<float> cost;                          // of the tile
   uint64_t covered = 0, not_finite = 0;
 };
 
