@@ -211,13 +211,14 @@ void trace_group(const KdView& tree, const PointPacket* const* points, int count
   const uint64_t mark = counts.mark();
   const bool pooled = shortcuts && collect(tree, reach, most_leaves, pool, counts) == Collected::all;
   counts.share(mark, count, [&](int i) { return points[i]->live; });
-  if (!pooled && shortcuts && count > 1 && largest_component(extent(reach.start)) > 2 * settings.distance) {
+  if (!pooled && shortcuts && count > 1 &&
+      largest_component(extent(as_box(reach.start))) > 2 * settings.distance) {
     for (int i = 0; i < count; ++i) trace_group(tree, points + i, 1, settings, out + i, counts.of(i));
     return;
   }
   RaySorter sorter;
   for (RayBin& bin : sorter.bins) bin.count = 0;
-  sorter.node = entry_node(tree, reach.box);
+  sorter.node = entry_node(tree, as_box(reach.box));
   const Walk walk = shortcuts ? Walk::sorted : Walk::as_they_come;
   for (int i = 0; i < count; ++i) {
     Frames frames;

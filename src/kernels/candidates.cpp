@@ -46,9 +46,9 @@ Reach reach_of(const KdView& tree, const PointPacket* const* points, int count, 
   Reach reach;
   reach.start = {{least_lane(low.x), least_lane(low.y), least_lane(low.z)},
                  {greatest_lane(high.x), greatest_lane(high.y), greatest_lane(high.z)}};
-  reach.radius = 0.50001f * length(extent(reach.start)) + greatest_lane(most_offset);
+  reach.radius = 0.50001f * length(extent(as_box(reach.start))) + greatest_lane(most_offset);
   reach.distance = distance;
-  reach.magnitude = magnitude(reach.start);
+  reach.magnitude = magnitude(as_box(reach.start));
   const float far = distance * 1.00001f + greatest_lane(most_offset);
   const float grow = far + traversal_slack(vitral::greatest(tree.magnitude, reach.magnitude + far));
   reach.box = {reach.start.min - Vec3{grow, grow, grow}, reach.start.max + Vec3{grow, grow, grow}};
@@ -85,7 +85,7 @@ struct CornerLanes {
 
 // The triangles that overlap the box and rise above the floor.
 Mask within(const CornerLanes& t, const Reach& reach) {
-  const Box& box = reach.box;
+  const Box box = as_box(reach.box);
   const auto overlap = [](Float x, Float y, Float z, float low, float high) {
     return both(greatest_of(x, y, z) >= Float(low), least_of(x, y, z) <= Float(high));
   };
@@ -159,12 +159,12 @@ Collected collect(const KdView& tree, const Reach& reach, int most_leaves, Trian
   uint32_t ids[kLanes];
   int pending = 0, leaves = 0, waiting = 0;
   struct Waiting {
-    Box cell;
+    PlainBox cell;
     uint32_t node;
   } stack[kMaxTreeDepth];
   const float slack = traversal_slack(vitral::greatest(tree.magnitude, reach.magnitude + reach.distance));
-  uint32_t node = entry_node(tree, reach.box);
-  Box cell = reach.box;
+  uint32_t node = entry_node(tree, as_box(reach.box));
+  Box cell = as_box(reach.box);
   out.count = 0;
   for (;;) {
     counts.group_node();
@@ -178,7 +178,7 @@ Collected collect(const KdView& tree, const Reach& reach, int most_leaves, Trian
       set_component(upper.min, a, vitral::greatest(low, s - slack));
       if (below) set_component(cell.max, a, vitral::least(high, s + slack));
       if (below && above) {
-        if (rises(upper, reach)) stack[waiting++] = {upper, child(n) + 1};
+        if (rises(upper, reach)) stack[waiting++] = {plain(upper), child(n) + 1};
         node = child(n);
       } else {
         if (!below) cell = upper;
@@ -204,7 +204,7 @@ Collected collect(const KdView& tree, const Reach& reach, int most_leaves, Trian
     }
     if (waiting == 0) break;
     --waiting;
-    node = stack[waiting].node, cell = stack[waiting].cell;
+    node = stack[waiting].node, cell = as_box(stack[waiting].cell);
   }
   counts.group_test(pending);
   if (pending > 0) add(tree, reach, ids, pending, out);

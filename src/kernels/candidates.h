@@ -12,7 +12,7 @@
 #pragma once
 #include "kdtree/kdtree.h"
 #include "kernels/counts.h"
-#include "kernels/points.h"
+#include "kernels/lanes.h"
 
 namespace vitral {
 namespace VITRAL_ISA {
@@ -42,8 +42,8 @@ struct Candidates {
 
 // What the rays of some blocks can reach: within the box, above the plane.
 struct Reach {
-  Box start;        // of the points
-  Box box;          // grown by how far the rays go and by the traversal's slack
+  PlainBox start;   // of the points
+  PlainBox box;     // grown by how far the rays go and by the traversal's slack
   float magnitude;  // largest coordinate of the points
   float radius;     // half the diagonal of `start`
   float distance;   // how far the rays go

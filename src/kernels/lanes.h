@@ -6,6 +6,17 @@
 namespace vitral {
 namespace VITRAL_ISA {
 
+// A box without a constructor: kernels share no code, and arrays of these are left as they are.
+struct PlainBox {
+  Vec3 min, max;
+};
+static inline Box as_box(const PlainBox& b) {
+  return {b.min, b.max};
+}
+static inline PlainBox plain(const Box& b) {
+  return {b.min, b.max};
+}
+
 static inline Vec3T<Float> load3(const float* x, const float* y, const float* z, int g) {
   return {load(x + g), load(y + g), load(z + g)};
 }

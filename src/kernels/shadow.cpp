@@ -12,6 +12,7 @@
 // between, the exact test is made. So the answer is that of the walk through the tree, ray for ray.
 #include "kernels/candidates.h"
 #include "kernels/counts.h"
+#include "kernels/lanes.h"
 #include "kernels/meet.h"
 #include "kernels/points.h"
 #include "kernels/tables.h"
@@ -45,7 +46,7 @@ struct Rectangle2 {
 
 // Where the rays of some blocks start.
 struct Sweep {
-  Box box;            // of the origins
+  PlainBox box;       // of the origins
   Rectangle2 bounds;  // in the light's frame
   float least_z, greatest_z;
 };
@@ -187,7 +188,7 @@ inline constexpr Budget kBudgets[3] = {{96, 96}, {96, 64}, {160, 128}};
 template <class Counts>
 Found collect_casters(const KdView& tree, const LightFrame& frame, const Sweep& sweep, GlassRule glass,
                       const Budget& budget, Casters& out, Counts counts) {
-  const float slack = traversal_slack(vitral::greatest(tree.magnitude, magnitude(sweep.box)));
+  const float slack = traversal_slack(vitral::greatest(tree.magnitude, magnitude(as_box(sweep.box))));
   const float reciprocal[3] = {frame.reciprocal.x, frame.reciprocal.y, frame.reciprocal.z};
   float low[3], high[3];
   float t0 = 0, t1 = kInfinity;
@@ -413,7 +414,9 @@ void enter_frame(const LightFrame& frame, const RayPacket& rays, ShadowBlock& bl
 
 Sweep join_sweeps(const Sweep& a, const Sweep& b) {
   Sweep s = a;
-  extend(s.box, b.box);
+  Box box = as_box(a.box);
+  extend(box, as_box(b.box));
+  s.box = plain(box);
   s.bounds = {vitral::least(a.bounds.x0, b.bounds.x0), vitral::greatest(a.bounds.x1, b.bounds.x1),
               vitral::least(a.bounds.y0, b.bounds.y0), vitral::greatest(a.bounds.y1, b.bounds.y1)};
   s.least_z = vitral::least(a.least_z, b.least_z),
@@ -461,7 +464,7 @@ Probe probe(const KdView& tree, const LightFrame& frame, const Sweep& sweep, Gla
 
 // Rays from all over the scene have little in common.
 bool is_narrow(const KdView& tree, const Sweep& sweep) {
-  return largest_component(extent(sweep.box)) * 16 < largest_component(extent(tree.bounds));
+  return largest_component(extent(as_box(sweep.box))) * 16 < largest_component(extent(tree.bounds));
 }
 
 // Some blocks with one list of casters; where that grows too long, a quarter of them at a time; and
@@ -531,8 +534,9 @@ void find_blocked(const KdView& tree, const Light& light, GlassRule glass, const
     blocks[i].lanes = traceable(rays[i]);
     blocks[i].blocked = 0;
     if (blocks[i].lanes == 0) continue;
-    blocks[i].sweep.box = box_of(rays[i], blocks[i].lanes);
-    extend(box, blocks[i].sweep.box);
+    const Box starts = box_of(rays[i], blocks[i].lanes);
+    blocks[i].sweep.box = plain(starts);
+    extend(box, starts);
   }
   const LightFrame frame = make_frame(-light.direction, box);
   for (int i = 0; i < count; ++i) {
