@@ -442,7 +442,8 @@ static inline float least_lane(Float v) {
   const __m512 h = _mm512_maskz_min_ps(0xffff, __m512(v.v),
                                        _mm512_maskz_shuffle_f32x4(0xffff, __m512(v.v), __m512(v.v), 0x4e));
   const __m512 q = _mm512_maskz_min_ps(0xffff, h, _mm512_maskz_shuffle_f32x4(0xffff, h, h, 0xb1));
-  const __m128 lane4 = _mm512_castps512_ps128(q);
+  __m128 lane4;  // all quarters are the same now
+  std::memcpy(&lane4, &q, sizeof lane4);
   const __m128 lane2 = _mm_min_ps(lane4, _mm_movehl_ps(lane4, lane4));
   return _mm_cvtss_f32(_mm_min_ss(lane2, _mm_shuffle_ps(lane2, lane2, 1)));
 #else
