@@ -204,7 +204,7 @@ void trace_group(const KdView& tree, const PointPacket* const* points, int count
   const bool shortcuts = settings.shortcuts == Shortcuts::taken && settings.distance > 1e-12f;
   const Reach reach = reach_of(tree, points, count, settings.distance);
   // Collecting must not take longer than what it saves.
-  const int most_leaves = count * (32 + 4 * settings.strata * settings.strata);
+  const int most_leaves = count * (16 + 2 * settings.strata * settings.strata);
   const int most_candidates =
       settings.strata < 6 ? 128 + 24 * settings.strata * settings.strata : kMaxCandidates;
   TrianglePool pool;
