@@ -114,8 +114,9 @@ bool is_background(const FrameContext& frame, const TileVisibility& visibility, 
 void primary_hits(const FrameContext& frame, const TileVisibility& visibility, int block, int x, int y,
                   uint64_t lanes, PassTally& tally, RayPacket& rays, HitPacket& hits, LaneWork* work);
 
-// resolve.cpp: encodes linear colours; counts and paints red those that are not finite.
-Rgb8 encode_pixel(Vec3& color, uint64_t& not_finite);
+// resolve.cpp: encodes linear colours, those that are the same as the one before only once; counts and
+// paints red those that are not finite.
+void encode_row(Vec3* colors, size_t count, Rgb8* pixels, uint64_t& not_finite);
 
 // shadow.cpp: which of the points face the light and are kept from it by something opaque, for up to
 // kTileBlocks packets that lie near each other; and then how much of it arrives at each point, per colour

@@ -193,19 +193,10 @@ PassTimes measure_resolve(Picture& p, const Image<Vec3>& radiance) {
   Image<Rgb8> pixels(radiance.width, radiance.height);
   return time_pass(p, "resolve", counts, [&] {
     p.pool.parallel_for(static_cast<size_t>(radiance.height), [&](size_t y, size_t) {
-      // As in a tile, neighbours of one colour are encoded once.
       uint64_t not_finite = 0;
       const size_t width = static_cast<size_t>(radiance.width);
-      Vec3 last{0, 0, 0};
-      Rgb8 code;
-      for (size_t i = y * width; i < (y + 1) * width; ++i) {
-        Vec3 color = radiance.pixels[i];
-        if (!(color == last)) {
-          code = encode_pixel(color, not_finite);
-          last = color;
-        }
-        pixels.pixels[i] = code;
-      }
+      std::vector<Vec3> row(&radiance.pixels[y * width], &radiance.pixels[y * width] + width);
+      encode_row(row.data(), width, &pixels.pixels[y * width], not_finite);
     });
   });
 }

@@ -1,35 +1,12 @@
 #include "render/measure_picture.h"
 
+#include "render/tile.h"
 #include "vitral/error.h"
 
 #include <chrono>
 
 namespace vitral {
 namespace {
-
-uint64_t pixels_in(const Rectangle& crop, int x, int y) {
-  uint64_t lanes = 0;
-  for (int lane = 0; lane < kPacketSize; ++lane) {
-    const int px = x + lane % kBlockSide, py = y + lane / kBlockSide;
-    if (px >= crop.x && px < crop.x + crop.width && py >= crop.y && py < crop.y + crop.height)
-      lanes |= 1ull << lane;
-  }
-  return lanes;
-}
-
-Rectangle pixels_of(const Settings& s) {
-  return s.crop.width == 0 ? Rectangle{0, 0, s.width, s.height} : s.crop;
-}
-
-// The tiles that a crop touches; anchored at the frame's corner, as in a rendered frame.
-struct Tiles {
-  int x, y, across, down;
-};
-Tiles tiles_of(const Rectangle& crop) {
-  const int x = crop.x / kTileSide, y = crop.y / kTileSide;
-  return {x, y, (crop.x + crop.width - 1) / kTileSide - x + 1,
-          (crop.y + crop.height - 1) / kTileSide - y + 1};
-}
 
 double milliseconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
@@ -38,12 +15,12 @@ double milliseconds_since(std::chrono::steady_clock::time_point start) {
 }  // namespace
 
 size_t measurement_bytes(const Settings& settings) {
-  const Tiles tiles = tiles_of(pixels_of(settings));
+  const Tiles tiles = tiles_of(crop_of(settings));
   return static_cast<size_t>(tiles.across) * static_cast<size_t>(tiles.down) * kTileBlocks * sizeof(Block);
 }
 
 Picture lay_out(const FrameContext& frame, ThreadPool& pool, const Control& control, const Runs& runs) {
-  const Rectangle crop = pixels_of(frame.settings);
+  const Rectangle crop = crop_of(frame.settings);
   const Tiles tiles = tiles_of(crop);
   Picture p{frame, crop, pool, control, runs, {}, std::vector<Scratch>(pool.workers())};
   p.blocks.resize(static_cast<size_t>(tiles.across) * static_cast<size_t>(tiles.down) * kTileBlocks);
@@ -52,7 +29,7 @@ Picture lay_out(const FrameContext& frame, ThreadPool& pool, const Control& cont
     Block& b = p.blocks[i];
     b.x = (tiles.x + tile % tiles.across) * kTileSide + inside % kTileBlocksAcross * kBlockSide;
     b.y = (tiles.y + tile / tiles.across) * kTileSide + inside / kTileBlocksAcross * kBlockSide;
-    b.lanes = pixels_in(p.crop, b.x, b.y);
+    b.lanes = lanes_inside(p.crop, b.x, b.y);
   }
   return p;
 }

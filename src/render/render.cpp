@@ -23,10 +23,6 @@
 namespace vitral {
 namespace {
 
-Rectangle crop_of(const Settings& s) {
-  return s.crop.width == 0 ? Rectangle{0, 0, s.width, s.height} : s.crop;
-}
-
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
@@ -81,25 +77,22 @@ Frame render_frame(const Scene& scene, const Accelerator& accelerator, const Cam
     frame.raster = &raster_view;
   }
 
-  // Tiles are anchored at the frame's corner, so that a crop's pixels see the same neighbours.
-  const int first_x = crop.x / kTileSide, first_y = crop.y / kTileSide;
-  const int tiles_x = (crop.x + crop.width - 1) / kTileSide - first_x + 1;
-  const int tiles_y = (crop.y + crop.height - 1) / kTileSide - first_y + 1;
-  const size_t tiles = static_cast<size_t>(tiles_x) * static_cast<size_t>(tiles_y);
+  const Tiles tiles = tiles_of(crop);
+  const size_t count = static_cast<size_t>(tiles.across) * static_cast<size_t>(tiles.down);
   std::vector<Worker> workers(pool.workers());
   std::mutex progress_mutex;
   size_t done = 0;
   uint64_t rays = 0;
-  pool.parallel_for(tiles, [&](size_t i, size_t w) {
+  pool.parallel_for(count, [&](size_t i, size_t w) {
     if (control.stop.load(std::memory_order_relaxed)) throw Interrupted();
     Worker& worker = workers[w];
     const auto before = worker.tally.rays;
-    render_tile(frame, crop, (first_x + static_cast<int>(i) % tiles_x) * kTileSide,
-                (first_y + static_cast<int>(i) / tiles_x) * kTileSide, worker, out, targets);
+    render_tile(frame, crop, (tiles.x + static_cast<int>(i) % tiles.across) * kTileSide,
+                (tiles.y + static_cast<int>(i) / tiles.across) * kTileSide, worker, out, targets);
     if (!control.on_progress) return;
     const std::lock_guard<std::mutex> lock(progress_mutex);
     for (size_t p = 0; p < kPasses; ++p) rays += worker.tally.rays[p] - before[p];
-    control.on_progress({"render", static_cast<double>(++done) / static_cast<double>(tiles), rays});
+    control.on_progress({"render", static_cast<double>(++done) / static_cast<double>(count), rays});
   });
 
   workers[0].tally.seconds[static_cast<size_t>(Pass::raster)] +=

@@ -3,6 +3,7 @@
 #include "render/frame.h"
 
 namespace vitral {
+namespace {
 
 Rgb8 encode_pixel(Vec3& color, uint64_t& not_finite) {
   const float sum = (absolute(color.x) + absolute(color.y)) + absolute(color.z);
@@ -11,6 +12,15 @@ Rgb8 encode_pixel(Vec3& color, uint64_t& not_finite) {
     color = {1, 0, 0};
   }
   return {linear_to_srgb8(color.x), linear_to_srgb8(color.y), linear_to_srgb8(color.z)};
+}
+
+}  // namespace
+
+void encode_row(Vec3* colors, size_t count, Rgb8* pixels, uint64_t& not_finite) {
+  for (size_t i = 0; i < count; ++i) {
+    const bool as_before = i > 0 && colors[i] == colors[i - 1];
+    pixels[i] = as_before ? pixels[i - 1] : encode_pixel(colors[i], not_finite);
+  }
 }
 
 }  // namespace vitral

@@ -9,44 +9,24 @@ namespace {
 
 constexpr size_t kTilePixels = static_cast<size_t>(kTileSide) * kTileSide;
 
-// The lanes of the block at (x, y) that lie in the crop.
-uint64_t lanes_inside(const Rectangle& crop, int x, int y) {
-  if (x >= crop.x && y >= crop.y && x + kBlockSide <= crop.x + crop.width &&
-      y + kBlockSide <= crop.y + crop.height)
-    return ~0ull;
-  uint64_t lanes = 0;
-  for (int lane = 0; lane < kPacketSize; ++lane) {
-    const int px = x + lane % kBlockSide, py = y + lane / kBlockSide;
-    if (px >= crop.x && px < crop.x + crop.width && py >= crop.y && py < crop.y + crop.height)
-      lanes |= 1ull << lane;
-  }
-  return lanes;
-}
-
 // Where the frame's pixel (x, y) lies in the pictures of the crop.
 size_t frame_pixel(const Rectangle& crop, int x, int y) {
   return static_cast<size_t>(y - crop.y) * static_cast<size_t>(crop.width) + static_cast<size_t>(x - crop.x);
 }
 
-// Moves the tile's colours to the frame. Neighbours are often of one colour, which is encoded once.
+// Moves the tile's colours to the frame.
 void resolve_tile(const Rectangle& crop, int tile_x, int tile_y, Worker& worker, Frame& out,
                   const AovTargets& targets) {
   const PassTimer timer(worker.tally, Pass::resolve);
   const int x0 = std::max(tile_x, crop.x), x1 = std::min(tile_x + kTileSide, crop.x + crop.width);
   const int y0 = std::max(tile_y, crop.y), y1 = std::min(tile_y + kTileSide, crop.y + crop.height);
-  Vec3 last{0, 0, 0};
-  Rgb8 code;
   for (int y = y0; y < y1; ++y) {
+    encode_row(&worker.color[static_cast<size_t>((y - tile_y) * kTileSide + (x0 - tile_x))],
+               static_cast<size_t>(x1 - x0), &out.pixels.pixels[frame_pixel(crop, x0, y)], worker.not_finite);
     for (int x = x0; x < x1; ++x) {
       const size_t here = static_cast<size_t>((y - tile_y) * kTileSide + (x - tile_x));
       const size_t there = frame_pixel(crop, x, y);
-      Vec3& color = worker.color[here];
-      if (!(color == last)) {
-        code = encode_pixel(color, worker.not_finite);
-        last = color;
-      }
-      out.pixels.pixels[there] = code;
-      if (!out.radiance.pixels.empty()) out.radiance.pixels[there] = color;
+      if (!out.radiance.pixels.empty()) out.radiance.pixels[there] = worker.color[here];
       if (Aov* aov = target(targets, AovKind::reflection))
         aov->pixels.pixels[there] = worker.reflection[here];
       if (Aov* aov = target(targets, AovKind::refraction))
@@ -81,6 +61,29 @@ void see_block(const FrameContext& frame, Worker& worker, int block, int x, int 
 }
 
 }  // namespace
+
+Rectangle crop_of(const Settings& s) {
+  return s.crop.width == 0 ? Rectangle{0, 0, s.width, s.height} : s.crop;
+}
+
+Tiles tiles_of(const Rectangle& crop) {
+  const int x = crop.x / kTileSide, y = crop.y / kTileSide;
+  return {x, y, (crop.x + crop.width - 1) / kTileSide - x + 1,
+          (crop.y + crop.height - 1) / kTileSide - y + 1};
+}
+
+uint64_t lanes_inside(const Rectangle& crop, int x, int y) {
+  if (x >= crop.x && y >= crop.y && x + kBlockSide <= crop.x + crop.width &&
+      y + kBlockSide <= crop.y + crop.height)
+    return ~0ull;
+  uint64_t lanes = 0;
+  for (int lane = 0; lane < kPacketSize; ++lane) {
+    const int px = x + lane % kBlockSide, py = y + lane / kBlockSide;
+    if (px >= crop.x && px < crop.x + crop.width && py >= crop.y && py < crop.y + crop.height)
+      lanes |= 1ull << lane;
+  }
+  return lanes;
+}
 
 void render_tile(const FrameContext& frame, const Rectangle& crop, int tile_x, int tile_y, Worker& worker,
                  Frame& out, const AovTargets& targets) {

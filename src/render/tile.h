@@ -7,6 +7,19 @@
 
 namespace vitral {
 
+// The pixels that a frame consists of: the crop, or all.
+Rectangle crop_of(const Settings& settings);
+
+// The tiles that a crop touches, anchored at the frame's corner, so that its pixels see the same neighbours
+// as in the whole frame.
+struct Tiles {
+  int x, y, across, down;  // the first one's column and row, and how many there are
+};
+Tiles tiles_of(const Rectangle& crop);
+
+// The lanes of the block at (x, y) that lie in the crop.
+uint64_t lanes_inside(const Rectangle& crop, int x, int y);
+
 // A worker's own memory, kept from tile to tile.
 struct Worker {
   PassTally tally;
