@@ -4,6 +4,7 @@
 #include "json_text.h"
 #include "process.h"
 #include "scratch.h"
+#include "terminal.h"
 
 #include <gtest/gtest.h>
 
@@ -371,52 +372,15 @@ TEST_F(Bench, RefusesAPictureThatDoesNotFitIntoMemory) {
 }
 
 // Bench with a pseudo-terminal for its standard error.
-struct Watched {
-  int ours = -1, theirs = -1;
-  std::string seen;
-
-  Watched() {
-    ours = posix_openpt(O_RDWR | O_NOCTTY);
-    EXPECT_TRUE(ours >= 0 && grantpt(ours) == 0 && unlockpt(ours) == 0);
-    theirs = open(ptsname(ours), O_RDWR | O_NOCTTY);
-    EXPECT_GE(theirs, 0);
-  }
-  ~Watched() {
-    close(ours);
-    close(theirs);
-  }
-  Watched(const Watched&) = delete;
-  Watched& operator=(const Watched&) = delete;
-
-  // Reads what has come within `ms` milliseconds; false when nothing has.
-  bool read_some(int ms) {
-    pollfd stream{ours, POLLIN, 0};
-    if (poll(&stream, 1, ms) <= 0 || !(stream.revents & POLLIN)) return false;
-    char bytes[1024];
-    const ssize_t count = read(ours, bytes, sizeof bytes);
-    if (count > 0) seen.append(bytes, static_cast<size_t>(count));
-    return count > 0;
-  }
-  // Reads on until `text` has been seen; false after half a minute.
-  bool wait_for(const std::string& text) {
-    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(30);
-    while (seen.find(text) == std::string::npos) {
-      if (std::chrono::steady_clock::now() > end) return false;
-      read_some(100);
-    }
-    return true;
-  }
-};
-
 TEST_F(Bench, ShowsABarOnATerminalUnlessQuiet) {
   const Words words = joined({"bench", "floor.obj", "--repeat", "1"}, kFromAbove);
-  Watched open;
+  test::Terminal open;
   EXPECT_EQ(test::Process(program, words, folder.path(), -1, open.theirs).wait().code, 0);
   for (const char* pass : {"build", "raster", "shadows", "ao", "frame"})
     EXPECT_TRUE(open.wait_for(std::string("\r") + pass)) << open.seen;
   EXPECT_TRUE(open.wait_for("\r\x1b[K")) << "the bar is erased";
 
-  Watched quiet;
+  test::Terminal quiet;
   EXPECT_EQ(test::Process(program, joined(words, {"--quiet"}), folder.path(), -1, quiet.theirs).wait().code,
             0);
   while (quiet.read_some(50)) continue;
@@ -430,7 +394,7 @@ TEST_F(Bench, StopsWhenInterrupted) {
       kAtThePlate, {"--size", "512x512", "--ao-samples", "1024", "--ao-distance", "50", "--isa", "scalar"});
   for (const auto& [shown, option] :
        {std::pair{"\rao ", "--effects=ao"}, std::pair{"\rauto, all  ", "--report"}}) {
-    Watched terminal;
+    test::Terminal terminal;
     const Words words = joined({"bench", "plate.obj", option}, work);
     test::Process process(program, words, folder.path(), -1, terminal.theirs);
     ASSERT_TRUE(terminal.wait_for(shown)) << terminal.seen;

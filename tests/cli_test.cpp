@@ -3,12 +3,14 @@
 #include "io/image_file.h"
 #include "process.h"
 #include "scratch.h"
+#include "terminal.h"
 
 #include <gtest/gtest.h>
 
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -279,38 +281,6 @@ TEST_F(Cli, NoticesAFullDisk) {
   close(full);
 }
 
-// A pseudo-terminal: our side, and the side a program takes for a terminal.
-struct Terminal {
-  int ours = posix_openpt(O_RDWR | O_NOCTTY);
-  int theirs = -1;
-  std::string seen;
-
-  Terminal() {
-    if (ours >= 0 && grantpt(ours) == 0 && unlockpt(ours) == 0)
-      theirs = open(ptsname(ours), O_RDWR | O_NOCTTY);
-  }
-  ~Terminal() {
-    close(ours);
-    if (theirs >= 0) close(theirs);
-  }
-  Terminal(const Terminal&) = delete;
-  Terminal& operator=(const Terminal&) = delete;
-
-  // Reads on until `text` has been seen; false after half a minute.
-  bool wait_for(const std::string& text) {
-    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(30);
-    while (seen.find(text) == std::string::npos) {
-      pollfd stream{ours, POLLIN, 0};
-      if (std::chrono::steady_clock::now() > end) return false;
-      if (poll(&stream, 1, 100) <= 0 || !(stream.revents & POLLIN)) continue;
-      char bytes[1024];
-      const ssize_t count = read(ours, bytes, sizeof bytes);
-      if (count > 0) seen.append(bytes, static_cast<size_t>(count));
-    }
-    return true;
-  }
-};
-
 // A wavy sheet of 2 * side * side triangles.
 std::string wavy_sheet(int side) {
   std::string text;
@@ -330,37 +300,41 @@ std::string wavy_sheet(int side) {
   return text;
 }
 
-TEST_F(Cli, StopsWhenInterrupted) {
-  folder.write("sheet.obj", wavy_sheet(40));
-  const Words long_work{"sheet.obj", "--size", "4096x4096", "--ao-samples", "1024"};
-  const size_t files = folder.files();
-  Terminal terminal;
-  ASSERT_GE(terminal.theirs, 0);
-  test::Process process(program, long_work, folder.path(), -1, terminal.theirs);
-  // The bar says that the frame is being made.
-  ASSERT_TRUE(terminal.wait_for("%")) << terminal.seen;
-  const auto start = std::chrono::steady_clock::now();
-  process.interrupt();
-  const Finished done = process.wait();
-  EXPECT_EQ(done.code, 130);
+// Work of minutes, stopped by `interrupt` once its bar says that the frame is being made.
+struct LongRun : Cli {
+  test::Terminal terminal;
+
+  int code_after(const std::function<void(const test::Process&)>& interrupt) {
+    folder.write("sheet.obj", wavy_sheet(40));
+    const size_t files = folder.files();
+    test::Process process(program, {"sheet.obj", "--size", "4096x4096", "--ao-samples", "1024"},
+                          folder.path(), -1, terminal.theirs);
+    EXPECT_TRUE(terminal.wait_for("%")) << terminal.seen;
+    interrupt(process);
+    const int code = process.wait().code;
+    EXPECT_EQ(folder.files(), files) << "a file was left behind";
+    return code;
+  }
+};
+
+TEST_F(LongRun, StopsWhenInterrupted) {
+  std::chrono::steady_clock::time_point start;
+  EXPECT_EQ(code_after([&](const test::Process& process) {
+              start = std::chrono::steady_clock::now();
+              process.interrupt();
+            }),
+            130);
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
   EXPECT_TRUE(terminal.wait_for("vitral: interrupted")) << terminal.seen;
-  EXPECT_EQ(folder.files(), files) << "a file was left behind";
 }
 
-TEST_F(Cli, StopsInOrderWhenInterruptedTwice) {
-  folder.write("sheet.obj", wavy_sheet(40));
-  const Words long_work{"sheet.obj", "--size", "4096x4096", "--ao-samples", "1024"};
-  const size_t files = folder.files();
-  Terminal terminal;
-  ASSERT_GE(terminal.theirs, 0);
-  test::Process process(program, long_work, folder.path(), -1, terminal.theirs);
-  ASSERT_TRUE(terminal.wait_for("%")) << terminal.seen;
-  process.interrupt();
-  std::this_thread::sleep_for(std::chrono::microseconds(200));
-  process.interrupt();
-  EXPECT_EQ(process.wait().code, 130);
-  EXPECT_EQ(folder.files(), files) << "a file was left behind";
+TEST_F(LongRun, StopsInOrderWhenInterruptedTwice) {
+  EXPECT_EQ(code_after([](const test::Process& process) {
+              process.interrupt();
+              std::this_thread::sleep_for(std::chrono::microseconds(200));
+              process.interrupt();
+            }),
+            130);
 }
 
 // Whether a file of a temporary name is in the folder.
@@ -387,20 +361,20 @@ TEST_F(Cli, FinishesTheFileItWritesWhenInterruptedTwice) {
     const Finished done = process.wait();
     EXPECT_FALSE(has_temporary(folder.path()));
     // It may have come to its end before it is interrupted; without a picture it has not.
-    EXPECT_TRUE(done.code == 130 || (done.code == 0 && fs::exists(folder / "a.png"))) << done.code << done.err;
+    EXPECT_TRUE(done.code == 130 || (done.code == 0 && fs::exists(folder / "a.png")))
+        << done.code << done.err;
     fs::remove(folder / "a.png");
   }
 }
 
 TEST_F(Cli, ShowsABarAndASummaryOnATerminal) {
-  Terminal terminal;
-  ASSERT_GE(terminal.theirs, 0);
+  test::Terminal terminal;
   EXPECT_EQ(
       test::Process(program, {"a.obj", "--size", "64x64"}, folder.path(), -1, terminal.theirs).wait().code,
       0);
   EXPECT_TRUE(terminal.wait_for("a.png: 64x64, 1 triangles")) << terminal.seen;
 
-  Terminal quiet;
+  test::Terminal quiet;
   test::Process(program, {"a.obj", "--size", "64x64", "--quiet"}, folder.path(), -1, quiet.theirs).wait();
   pollfd stream{quiet.ours, POLLIN, 0};
   EXPECT_EQ(poll(&stream, 1, 0), 0) << "not a word";
