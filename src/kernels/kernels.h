@@ -21,6 +21,11 @@ struct Kernels {
   // The closest hit of every live ray, cut-outs respected; lanes that are not live get no triangle.
   void (*trace_closest)(const KdView& tree, const RayPacket& rays, HitPacket& hits);
 
+  // The same for up to 16 packets that lie near each other, every four and all sixteen in a square.
+  // Rays that start in one point, as the camera's do, are traced together.
+  void (*closest_blocks)(const KdView& tree, const RayPacket* rays, int count, Shortcuts shortcuts,
+                         HitPacket* hits);
+
   // The live rays that meet anything in (tmin, tmax).
   uint64_t (*trace_any)(const KdView& tree, const RayPacket& rays, GlassRule glass);
 
@@ -58,8 +63,11 @@ struct Kernels {
   void (*intersect_visible)(const Pinhole& camera, const KdTriangle* triangles, int x, int y,
                             const uint32_t* numbers, HitPacket& hits);
 
-  // trace_closest, trace_shadows and ambient_blocks, with the same answers, which also add up what they do.
+  // trace_closest, closest_blocks, trace_shadows and ambient_blocks, with the same answers, which also add
+  // up what they do.
   void (*count_closest)(const KdView& tree, const RayPacket& rays, HitPacket& hits, const WorkCounts& out);
+  void (*count_closest_blocks)(const KdView& tree, const RayPacket* rays, int count, Shortcuts shortcuts,
+                               HitPacket* hits, const WorkCounts& work);
   void (*count_shadows)(const KdView& tree, const Light& light, GlassRule glass,
                         const PointPacket* const* points, int count, ShadowAnswer* out,
                         const WorkCounts& work);

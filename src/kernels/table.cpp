@@ -9,9 +9,23 @@ namespace vitral {
 namespace VITRAL_ISA {
 
 const Kernels kTable = {
-    VITRAL_NAME(VITRAL_ISA), kLanes,      primary_rays,      trace_closest, trace_any,
-    surface_points,          mirror_rays, shadow_rays,       trace_shadows, ambient_occlusion,
-    ambient_blocks,          fill_tile,   intersect_visible, count_closest, count_shadows,
+    VITRAL_NAME(VITRAL_ISA),
+    kLanes,
+    primary_rays,
+    trace_closest,
+    closest_blocks,
+    trace_any,
+    surface_points,
+    mirror_rays,
+    shadow_rays,
+    trace_shadows,
+    ambient_occlusion,
+    ambient_blocks,
+    fill_tile,
+    intersect_visible,
+    count_closest,
+    count_closest_blocks,
+    count_shadows,
     count_ambient,
 };
 

@@ -7,6 +7,8 @@ namespace VITRAL_ISA {
 
 void primary_rays(const Pinhole& camera, int x, int y, RayPacket& rays);
 void trace_closest(const KdView& tree, const RayPacket& rays, HitPacket& hits);
+void closest_blocks(const KdView& tree, const RayPacket* rays, int count, Shortcuts shortcuts,
+                    HitPacket* hits);
 uint64_t trace_any(const KdView& tree, const RayPacket& rays, GlassRule glass);
 uint64_t surface_points(const KdTriangle* triangles, const RayPacket& rays, const HitPacket& hits,
                         const OffsetRule& offset, PointPacket& out);
@@ -19,6 +21,8 @@ void ambient_occlusion(const KdView& tree, const PointPacket& points, const Ambi
 void ambient_blocks(const KdView& tree, const PointPacket* const* points, int count,
                     const AmbientSettings& settings, FreeRays* out);
 void count_closest(const KdView& tree, const RayPacket& rays, HitPacket& hits, const WorkCounts& out);
+void count_closest_blocks(const KdView& tree, const RayPacket* rays, int count, Shortcuts shortcuts,
+                          HitPacket* hits, const WorkCounts& work);
 void count_shadows(const KdView& tree, const Light& light, GlassRule glass, const PointPacket* const* points,
                    int count, ShadowAnswer* out, const WorkCounts& work);
 void count_ambient(const KdView& tree, const PointPacket* const* points, int count,

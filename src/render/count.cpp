@@ -28,6 +28,17 @@ void run_closest(const FrameContext& frame, Pass pass, const RayPacket& rays, Pa
   }
 }
 
+void run_closest_blocks(const FrameContext& frame, Pass pass, const RayPacket* rays, int count,
+                        PassTally& tally, HitPacket* hits, LaneWork* work) {
+  const KdView& tree = frame.accelerator.view;
+  if (frame.count == Count::nothing) {
+    frame.kernels.closest_blocks(tree, rays, count, Shortcuts::taken, hits);
+  } else {
+    frame.kernels.count_closest_blocks(tree, rays, count, Shortcuts::taken, hits,
+                                       counts_of(frame, pass, tally, work));
+  }
+}
+
 void run_shadows(const FrameContext& frame, const Light& light, const PointPacket* const* points, int count,
                  PassTally& tally, ShadowAnswer* out, LaneWork* work) {
   const KdView& tree = frame.accelerator.view;

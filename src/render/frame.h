@@ -74,9 +74,6 @@ inline Vec3 get(const float* x, const float* y, const float* z, int lane) {
   return {x[lane], y[lane], z[lane]};
 }
 
-// The blocks of a tile so that every four and every sixteen of them make a square.
-inline constexpr int kBlocksInOrder[kTileBlocks] = {0, 1, 4, 5, 2, 3, 6, 7, 8, 9, 12, 13, 10, 11, 14, 15};
-
 // Colours of 64 points.
 struct ColorPacket {
   Vec3 color[kPacketSize];
@@ -96,6 +93,8 @@ Count what_to_count(const Settings& settings);
 // to `work`, one entry a packet, which is not looked at otherwise.
 void run_closest(const FrameContext& frame, Pass pass, const RayPacket& rays, PassTally& tally,
                  HitPacket& hits, LaneWork* work);
+void run_closest_blocks(const FrameContext& frame, Pass pass, const RayPacket* rays, int count,
+                        PassTally& tally, HitPacket* hits, LaneWork* work);
 void run_shadows(const FrameContext& frame, const Light& light, const PointPacket* const* points, int count,
                  PassTally& tally, ShadowAnswer* out, LaneWork* work);
 void run_ambient(const FrameContext& frame, const PointPacket* const* points, int count,
@@ -105,14 +104,21 @@ void run_ambient(const FrameContext& frame, const PointPacket* const* points, in
 RasterView setup_raster(const FrameContext& frame, const Rectangle& crop, ThreadPool& pool,
                         const Control& control, RasterFrame& raster);
 
-// primary.cpp: what the camera sees. First the tile, when it is rasterized; then block by block the
-// rays through the pixel centres and their hits, unless the rasterizer saw nothing in the block.
-// `lanes` are the pixels wanted.
-void rasterize_tile(const FrameContext& frame, int tile_x, int tile_y, PassTally& tally,
-                    TileVisibility& visibility);
-bool is_background(const FrameContext& frame, const TileVisibility& visibility, int block);
-void primary_hits(const FrameContext& frame, const TileVisibility& visibility, int block, int x, int y,
-                  uint64_t lanes, PassTally& tally, RayPacket& rays, HitPacket& hits, LaneWork* work);
+// The blocks of a tile so that every four and every sixteen of them make a square.
+inline constexpr int kBlocksInOrder[kTileBlocks] = {0, 1, 4, 5, 2, 3, 6, 7, 8, 9, 12, 13, 10, 11, 14, 15};
+
+// What the camera sees in a tile, the i-th block of kBlocksInOrder in entry i.
+struct TileHits {
+  TileVisibility visibility;
+  std::array<RayPacket, kTileBlocks> rays;  // none live: nothing is seen in that block
+  std::array<HitPacket, kTileBlocks> hits;
+  std::array<LaneWork, kTileBlocks> work;  // of the tracer; only with Count::pixels
+};
+
+// primary.cpp: the rays through the centres of a tile's pixels and their hits, rasterized or traced. `lanes`
+// are the pixels wanted, by block in kBlocksInOrder.
+void find_primary_hits(const FrameContext& frame, int tile_x, int tile_y, const uint64_t* lanes,
+                       PassTally& tally, TileHits& out);
 
 // resolve.cpp: encodes linear colours, those that are the same as the one before only once; counts and
 // paints red those that are not finite.

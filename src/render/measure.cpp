@@ -16,19 +16,19 @@ uint64_t count_of(uint64_t lanes) {
 enum class Detail { points, surfaces };
 void see_tile(const Picture& p, Block* blocks, Detail detail, Scratch& s) {
   const FrameContext& frame = p.frame;
-  rasterize_tile(frame, blocks->x, blocks->y, s.tally, s.visibility);
-  for (int i = 0; i < kTileBlocks; ++i) {
-    Block& b = blocks[i];
+  uint64_t lanes[kTileBlocks];
+  for (size_t i = 0; i < kTileBlocks; ++i) lanes[i] = blocks[kBlocksInOrder[i]].lanes;
+  TileHits& seen = s.tile_hits;
+  find_primary_hits(frame, blocks->x, blocks->y, lanes, s.tally, seen);
+  for (size_t i = 0; i < kTileBlocks; ++i) {
+    Block& b = blocks[kBlocksInOrder[i]];
     b.surfaces.points.live = 0;
-    if (b.lanes == 0 || is_background(frame, s.visibility, i)) continue;
-    RayPacket rays;
-    HitPacket hits;
-    primary_hits(frame, s.visibility, i, b.x, b.y, b.lanes, s.tally, rays, hits, nullptr);
+    if (seen.rays[i].live == 0) continue;
     if (detail == Detail::points) {
-      frame.kernels.surface_points(frame.accelerator.triangles.data(), rays, hits, frame.offset,
-                                   b.surfaces.points);
+      frame.kernels.surface_points(frame.accelerator.triangles.data(), seen.rays[i], seen.hits[i],
+                                   frame.offset, b.surfaces.points);
     } else {
-      make_surfaces(frame, rays, hits, b.surfaces);
+      make_surfaces(frame, seen.rays[i], seen.hits[i], b.surfaces);
     }
   }
 }

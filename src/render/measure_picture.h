@@ -24,7 +24,7 @@ struct Counts {
 struct Scratch {
   Counts counts;
   PassTally tally;
-  TileVisibility visibility;
+  TileHits tile_hits;
   PathScratch paths;
   std::vector<Vec3> color;
   std::array<Block, kTileBlocks> tile;

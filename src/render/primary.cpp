@@ -21,31 +21,36 @@ RasterView setup_raster(const FrameContext& frame, const Rectangle& crop, Thread
                    &frame.accelerator.view.cut_outs);
 }
 
-void rasterize_tile(const FrameContext& frame, int tile_x, int tile_y, PassTally& tally,
-                    TileVisibility& visibility) {
-  if (!frame.raster) return;
-  const PassTimer timer(tally, Pass::raster);
-  frame.kernels.fill_tile(*frame.raster, tile_x / kTileSide, tile_y / kTileSide, visibility);
-}
+namespace {
 
-bool is_background(const FrameContext& frame, const TileVisibility& visibility, int block) {
-  if (!frame.raster) return false;
+bool is_background(const TileVisibility& visibility, int block) {
   const uint32_t* triangles = visibility.triangle + block * kPacketSize;
   return std::all_of(triangles, triangles + kPacketSize, [](uint32_t t) { return t == kNoTriangle; });
 }
 
-void primary_hits(const FrameContext& frame, const TileVisibility& visibility, int block, int x, int y,
-                  uint64_t lanes, PassTally& tally, RayPacket& rays, HitPacket& hits, LaneWork* work) {
+}  // namespace
+
+void find_primary_hits(const FrameContext& frame, int tile_x, int tile_y, const uint64_t* lanes,
+                       PassTally& tally, TileHits& out) {
   const PassTimer timer(tally, Pass::raster);
-  frame.kernels.primary_rays(frame.camera, x, y, rays);
-  rays.live = lanes;
-  if (frame.raster) {
+  if (frame.raster)
+    frame.kernels.fill_tile(*frame.raster, tile_x / kTileSide, tile_y / kTileSide, out.visibility);
+  for (size_t i = 0; i < kTileBlocks; ++i) {
+    const int block = kBlocksInOrder[i];
+    const int x = tile_x + block % kTileBlocksAcross * kBlockSide,
+              y = tile_y + block / kTileBlocksAcross * kBlockSide;
+    out.rays[i].live = 0;
+    if (lanes[i] == 0 || (frame.raster && is_background(out.visibility, block))) continue;
+    frame.kernels.primary_rays(frame.camera, x, y, out.rays[i]);
+    out.rays[i].live = lanes[i];
+    if (!frame.raster) continue;
     frame.kernels.intersect_visible(frame.camera, frame.accelerator.triangles.data(), x, y,
-                                    visibility.triangle + block * kPacketSize, hits);
-  } else {
-    count_rays(tally, Pass::raster, lanes);
-    run_closest(frame, Pass::raster, rays, tally, hits, work);
+                                    out.visibility.triangle + block * kPacketSize, out.hits[i]);
   }
+  if (frame.raster) return;
+  for (const RayPacket& rays : out.rays) count_rays(tally, Pass::raster, rays.live);
+  run_closest_blocks(frame, Pass::raster, out.rays.data(), kTileBlocks, tally, out.hits.data(),
+                     out.work.data());
 }
 
 }  // namespace vitral

@@ -41,22 +41,14 @@ size_t tile_pixel(int x, int y, int lane) {
   return static_cast<size_t>((y + lane / kBlockSide) * kTileSide + x + lane % kBlockSide);
 }
 
-// What the pixels of one block see, with the keys of their random numbers.
-void see_block(const FrameContext& frame, Worker& worker, int block, int x, int y, uint64_t lanes,
-               SurfacePacket& surfaces) {
-  RayPacket rays;
-  HitPacket hits;
-  LaneWork work;
-  if (frame.count == Count::pixels) work = {};
-  primary_hits(frame, worker.visibility, block, x, y, lanes, worker.tally, rays, hits, &work);
-  if (frame.count == Count::pixels) {
+// What the pixels of a tile see: what the tracer did for them, when that is asked for.
+void add_cost(const FrameContext& frame, Worker& worker) {
+  if (frame.count != Count::pixels || frame.raster) return;
+  for (size_t i = 0; i < kTileBlocks; ++i) {
+    const int block = kBlocksInOrder[i];
+    const int x = block % kTileBlocksAcross * kBlockSide, y = block / kTileBlocksAcross * kBlockSide;
     for (int lane = 0; lane < kPacketSize; ++lane)
-      worker.cost[tile_pixel(x % kTileSide, y % kTileSide, lane)] += work.work[lane];
-  }
-  const PassTimer timer(worker.tally, Pass::shade);
-  make_surfaces(frame, rays, hits, surfaces);
-  for (int lane = 0; lane < kPacketSize; ++lane) {
-    surfaces.points.key[lane] = pixel_key(x + lane % kBlockSide, y + lane / kBlockSide, frame.settings.seed);
+      worker.cost[tile_pixel(x, y, lane)] += worker.seen.work[i].work[lane];
   }
 }
 
@@ -99,20 +91,33 @@ void render_tile(const FrameContext& frame, const Rectangle& crop, int tile_x, i
     sums.cost = worker.cost.data();
   }
   worker.paths.current.clear();
-  // What the tile's blocks see, those that see anything.
-  rasterize_tile(frame, tile_x, tile_y, worker.tally, worker.visibility);
+  // What the tile's blocks see, those that see anything, with the keys of their random numbers.
+  uint64_t lanes[kTileBlocks];
+  for (int i = 0; i < kTileBlocks; ++i) {
+    const int block = kBlocksInOrder[i];
+    lanes[i] = lanes_inside(crop, tile_x + block % kTileBlocksAcross * kBlockSide,
+                            tile_y + block / kTileBlocksAcross * kBlockSide);
+  }
+  TileHits& tile = worker.seen;
+  if (frame.count == Count::pixels) tile.work = {};
+  find_primary_hits(frame, tile_x, tile_y, lanes, worker.tally, tile);
+  add_cost(frame, worker);
   worker.surfaces.resize(kTileBlocks);
   const SurfacePacket* seen[kTileBlocks];
   int corner_x[kTileBlocks], corner_y[kTileBlocks];
   int count = 0;
-  for (const int block : kBlocksInOrder) {
+  for (size_t i = 0; i < kTileBlocks; ++i) {
+    if (tile.rays[i].live == 0) continue;
+    const PassTimer timer(worker.tally, Pass::shade);
+    const int block = kBlocksInOrder[i];
     const int x = tile_x + block % kTileBlocksAcross * kBlockSide,
               y = tile_y + block / kTileBlocksAcross * kBlockSide;
-    const uint64_t lanes = lanes_inside(crop, x, y);
-    if (lanes == 0 || is_background(frame, worker.visibility, block)) continue;
     SurfacePacket& surfaces = worker.surfaces[static_cast<size_t>(count)];
-    see_block(frame, worker, block, x, y, lanes, surfaces);
+    make_surfaces(frame, tile.rays[i], tile.hits[i], surfaces);
     if (surfaces.points.live == 0) continue;
+    for (int lane = 0; lane < kPacketSize; ++lane)
+      surfaces.points.key[lane] =
+          pixel_key(x + lane % kBlockSide, y + lane / kBlockSide, frame.settings.seed);
     seen[count] = &surfaces;
     corner_x[count] = x, corner_y[count] = y;
     ++count;

@@ -23,7 +23,7 @@ uint64_t lanes_inside(const Rectangle& crop, int x, int y);
 // A worker's own memory, kept from tile to tile.
 struct Worker {
   PassTally tally;
-  TileVisibility visibility;
+  TileHits seen;
   PathScratch paths;
   std::vector<SurfacePacket> surfaces;              // of the tile's blocks
   std::vector<Vec3> color, reflection, refraction;  // of the tile
