@@ -1,14 +1,10 @@
 // The rays of a tile that start in one point, in cells of 4x4 pixels, and what each has met so far.
 //
-// All rays that run fastest along the same axis, in the same sense, are points (sx, sy) of a plane: the shear
-// of the triangle test (kdtree/triangle.h). Their common origin makes every triangle's corners the same for
-// all of them. Depth is measured along that axis, so that t is depth / |dz|.
-//
 // A ray's best hit is at first only a triangle and two depths between which it lies. Which of two triangles
 // is nearer is mostly clear from that, and of a ray's triangles only the last is tested for t, u and v: for
 // a register of rays at a time, each with its own triangle. Where it is not clear both are tested at once.
 #pragma once
-#include "kdtree/triangle.h"
+#include "kernels/batch.h"
 #include "kernels/meet.h"
 #include "kernels/packet.h"
 #include "simd/simd.h"
@@ -30,6 +26,7 @@ struct Rectangle4 {
 };
 
 struct alignas(64) Cells {
+  int packets;
   float sx[kRays], sy[kRays], length[kRays], tmax[kRays];  // length: |dz|
   float low[kRays], high[kRays];                           // the best hit's depth is between these
   float t[kRays], u[kRays], v[kRays];                      // known but for the pending lanes
@@ -37,31 +34,9 @@ struct alignas(64) Cells {
   // Of each cell: the bounds of its live rays, and how deep a hit may be that still matters.
   float x0[kCells], x1[kCells], y0[kCells], y1[kCells], far[kCells];
   uint32_t live[kCells], pending[kCells];  // bits of lanes
-};
-
-// The rays at hand: their origin, permuted so that they run fastest along z, and which way they do.
-struct View {
-  int k[3];
-  float o[3];
-  float forward;             // +1 or -1
-  float tmin;                // of all rays
-  float before_all, in_all;  // depths below the first are before every ray's tmin, above the second none is
-};
-
-// Triangles as the rays see them, side by side.
-inline constexpr int kBatch = 16;
-struct alignas(64) Line {
-  float x[kBatch], y[kBatch], c[kBatch];
-};
-struct alignas(64) Batch {
-  float corner[9][kBatch];                               // relative to the origin, permuted: exact
-  float x0[kBatch], x1[kBatch], y0[kBatch], y1[kBatch];  // no ray outside this meets it
-  float nearest[kBatch];                                 // nor at a lower depth
-  Line edge[3];                                          // the test's edge values, in any order, up to
-  float doubt[kBatch];                                   // so much
-  float spread[kBatch], rounding[kBatch];  // the error of a computed depth: spread / area + rounding
-  uint32_t id[kBatch], flags[kBatch];
-  int count;
+  // Of groups of cells, and of all.
+  Rectangle4 group[kGroups];
+  float group_far[kGroups], all_far;
 };
 
 // A packet's lanes are rows of 8 pixels, a cell's are rows of 4.
@@ -90,6 +65,13 @@ static inline uint32_t cell_lanes(uint64_t packet, int cell) {
 static inline uint64_t packet_lanes(uint32_t lanes, int cell) {
   const uint64_t l = lanes;
   return ((l & 15) | (l & 0xf0) << 4 | (l & 0xf00) << 8 | (l & 0xf000) << 12) << first_lane(cell);
+}
+
+// The live rays of a packet.
+static inline uint64_t live_rays(const Cells& cells, int packet) {
+  uint64_t lanes = 0;
+  for (int c = 0; c < kCellsOfPacket; ++c) lanes |= packet_lanes(cells.live[packet * kCellsOfPacket + c], c);
+  return lanes;
 }
 
 // --- the exact test --------------------------------------------------------------------------------
@@ -137,11 +119,6 @@ static inline void settle(const KdView& tree, const View& view, Cells& cells, in
     set_depth(cells, at, wanted, found.t);
   }
   cells.pending[cell] &= ~lanes;
-}
-
-static inline Vec3T<Float> corner_at(const Batch& batch, int i, int k) {
-  return {Float(batch.corner[3 * k][i]), Float(batch.corner[3 * k + 1][i]),
-          Float(batch.corner[3 * k + 2][i])};
 }
 
 // Tests triangle i of the batch with lanes of the register at g of a cell. What they have met before is
