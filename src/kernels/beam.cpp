@@ -60,7 +60,9 @@ inline void prefetch_below(const KdView& tree, const KdNode& n) {
   __builtin_prefetch(is_leaf(n) ? references : children);
 }
 
-// Does any ray pass through the part of the beam, for which it still matters what is there?
+// Does any ray pass through the part of the beam, for which it still matters what is there? In the plane of
+// the rays a box is at most as wide as its near or far end; the slack covers the roundings of that, too.
+// Where triangles are smaller than a pixel most nodes lie between the rays.
 bool is_wanted(const Beam& beam, const Cells& cells, const Part& part) {
   if (!(part.z0 > 0)) return true;
   const View& v = beam.view;
