@@ -37,42 +37,92 @@ void make_directions(const PointPacket& points, const Frames& frames, const Ambi
   rays.live = lanes;
 }
 
-// The points of a stratum's rays that meet something. In squared cosines from the normal the stratum spans
-// [1 - (x + 1) / n, 1 - x / n], and around it [y / n, (y + 1) / n] of a turn.
-template <class Counts>
-uint64_t trace_stratum(const KdView& tree, const PointPacket& points, const Frames& frames,
-                       const AmbientSettings& settings, const Candidates& candidates, const Stratum& s,
-                       RayPacket& rays, Counts counts) {
-  const int height = kHeights * (s.n - s.x - 1) / s.n;
-  const int first = kQuadrants * s.y / s.n, last = (kQuadrants * (s.y + 1) - 1) / s.n;
-  uint64_t some = 0;
-  struct Test {
-    uint64_t lanes;
-    uint32_t triangle;
-  } tests[kMaxCandidates];
+// Those of the lanes whose rays pass through a cell, as derive_intervals() has it.
+struct alignas(64) Reciprocals {
+  float x[kPacketSize], y[kPacketSize], z[kPacketSize];
+};
+uint64_t enter(const PlainBox& cell, const RayPacket& rays, const Reciprocals& r, float slack, float distance,
+               uint64_t lanes) {
+  uint64_t inside = 0;
+  for (int g = 0; g < kPacketSize; g += kLanes) {
+    if (group_empty(lanes, g)) continue;
+    Float t0 = Float(0.0f), t1 = Float(distance);
+    const auto cut = [&](float low, float high, const float* origin, const float* reciprocal) {
+      const Float o = load(origin + g), d = load(reciprocal + g);
+      const Float below = (Float(low - slack) - o) * d, above = (Float(high + slack) - o) * d;
+      t0 = greatest(least(below, above), t0);
+      t1 = least(greatest(below, above), t1);
+    };
+    cut(cell.min.x, cell.max.x, rays.ox, r.x);
+    cut(cell.min.y, cell.max.y, rays.oy, r.y);
+    cut(cell.min.z, cell.max.z, rays.oz, r.z);
+    inside |= static_cast<uint64_t>(bits(t0 <= t1)) << g;
+  }
+  return inside & lanes;
+}
+
+// Points that may see a shape in a stratum. More strata than parts lie in one ring, and in one column or two.
+struct Test {
+  uint64_t lanes;
+  int shape;
+};
+template <int kMost>
+int find_tests(const Seen<kMost>& seen, const Parts& parts, const Stratum& s, Test* tests, uint64_t& some) {
+  const int r = parts.count * (s.n - s.x - 1) / s.n;
+  const uint64_t* const ring = seen.ring[r];
+  const uint64_t* const first = seen.column[parts.count * s.y / s.n];
+  const uint64_t* const last = seen.column[(parts.count * (s.y + 1) - 1) / s.n];
   int count = 0;
-  for (int i = 0; i < candidates.seen_at[height]; ++i) {
-    const Candidate& c = candidates.list[i];
-    uint64_t around = 0;
-    for (int q = first; q <= last; ++q) around |= c.quadrant[q];
-    const uint64_t lanes = c.height[height] & around;
-    tests[count] = {lanes, c.triangle};
+  for (int k = 0; k < seen.reaching[r]; ++k) {
+    const int i = seen.order[k];
+    const uint64_t lanes = ring[i] & (first[i] | last[i]);
+    tests[count] = {lanes, i};
     count += lanes != 0;
     some |= lanes;
   }
-  if (some == 0) return 0;
+  return count;
+}
+
+// Of a stratum's rays those that meet one of the triangles, and those that meet none but enter a node.
+struct Outcome {
+  uint64_t met, walks;
+};
+template <class Counts>
+Outcome trace_stratum(const KdView& tree, const PointPacket& points, const Frames& frames,
+                      const AmbientSettings& settings, const Parts& parts, const Candidates& candidates,
+                      const Stratum& s, RayPacket& rays, Counts counts) {
+  Test triangles[kMaxCandidates], nodes[kMaxNodes];
+  uint64_t some = 0;
+  const int triangle_count = find_tests(candidates.triangles, parts, s, triangles, some);
+  const int node_count = find_tests(candidates.nodes, parts, s, nodes, some);
+  if (some == 0) return {0, 0};
   make_directions(points, frames, settings, s, some, rays);
   Shears shears;
   derive_shears(rays, shears);
   counts.trace(shears.traceable);
-  uint64_t met = 0;
-  for (int i = 0; i < count; ++i) {
-    const uint64_t lanes = tests[i].lanes & shears.traceable & ~met;
+  Outcome out{0, 0};
+  for (int i = 0; i < triangle_count; ++i) {
+    const uint64_t lanes = triangles[i].lanes & shears.traceable & ~out.met;
     if (lanes == 0) continue;
     counts.test(lanes);
-    met |= test_any(tree, rays, shears, lanes, tests[i].triangle);
+    out.met |= test_any(tree, rays, shears, lanes, candidates.triangle[triangles[i].shape]);
   }
-  return met;
+  if (node_count == 0) return out;
+  Reciprocals r;
+  for (int g = 0; g < kPacketSize; g += kLanes) {
+    if (group_empty(some, g)) continue;
+    store(r.x + g, safe_reciprocal(load(rays.dx + g))), store(r.y + g, safe_reciprocal(load(rays.dy + g)));
+    store(r.z + g, safe_reciprocal(load(rays.dz + g)));
+  }
+  const float slack = traversal_slack(vitral::greatest(tree.magnitude, shears.reach));
+  for (int i = 0; i < node_count; ++i) {
+    const uint64_t lanes = nodes[i].lanes & shears.traceable & ~(out.met | out.walks);
+    if (lanes == 0) continue;
+    counts.node(lanes);
+    const PlainBox& cell = candidates.cell[nodes[i].shape];
+    out.walks |= enter(cell, rays, r, slack, settings.distance, lanes);
+  }
+  return out;
 }
 
 void make_frames(const PointPacket& points, Frames& frames) {
@@ -160,78 +210,120 @@ void sort_rays(const KdView& tree, RaySorter& sorter, const RayPacket& rays, int
   }
 }
 
-// What the rays of one block meet: found among the candidates, or, where these are too many, by the walk.
-enum class Walk { sorted, as_they_come };
-template <class Counts>
-void trace_block(const KdView& tree, const PointPacket& points, const Frames& frames,
-                 const AmbientSettings& settings, const Candidates& candidates, Walk walk, RaySorter& sorter,
-                 int block, FreeRays* free_rays, Counts counts) {
-  const int n = settings.strata;
-  uint32_t* const count = free_rays[block].count;
-  for (int g = 0; g < kPacketSize; g += kLanes) store(count + g, Uint(static_cast<uint32_t>(n * n)));
-  if (candidates.count == 0) return;
-  RayPacket rays;
+void remove_rays(uint64_t met, FreeRays& rays) {
+  for (int g = 0; g < kPacketSize; g += kLanes) {
+    if (group_empty(met, g)) continue;
+    const Uint free = load(rays.count + g);
+    store(rays.count + g, select(group_mask(met, g), free - Uint(1u), free));
+  }
+}
+
+void begin_rays(const PointPacket& points, const AmbientSettings& settings, RayPacket& rays) {
   set_origins(points, rays);
   rays.tmin = 0;
   for (int g = 0; g < kPacketSize; g += kLanes) store(rays.tmax + g, Float(settings.distance));
+}
+
+// What the rays of a block meet, found among candidates. Rays that enter a node go to the sorter.
+template <class Counts>
+void test_block(const KdView& tree, const PointPacket& points, const Frames& frames,
+                const AmbientSettings& settings, const Parts& parts, const Candidates& candidates,
+                RaySorter& sorter, int block, FreeRays* free_rays, Counts counts) {
+  if (candidates.triangles.count == 0 && candidates.nodes.count == 0) return;
+  const int n = settings.strata;
+  RayPacket rays;
+  begin_rays(points, settings, rays);
   for (int s = 0; s < n * n; ++s) {
-    const Stratum stratum{s, s % n, s / n, n};
-    uint64_t met = 0;
-    if (candidates.count > 0) {
-      met = trace_stratum(tree, points, frames, settings, candidates, stratum, rays, counts.of(block));
-    } else {
-      make_directions(points, frames, settings, stratum, points.live, rays);
-      if (walk == Walk::sorted)
-        sort_rays(tree, sorter, rays, block, settings.distance, free_rays, counts);
-      else
-        met = trace_any_from(tree, 0, rays, GlassRule::passes, counts.of(block));
+    const Outcome outcome = trace_stratum(tree, points, frames, settings, parts, candidates,
+                                          {s, s % n, s / n, n}, rays, counts.of(block));
+    remove_rays(outcome.met, free_rays[block]);
+    rays.live = outcome.walks;
+    if (rays.live != 0) sort_rays(tree, sorter, rays, block, settings.distance, free_rays, counts);
+  }
+}
+
+// What they meet, found by the walk, by way of the sorter or as they come.
+enum class Walk { sorted, as_they_come };
+template <class Counts>
+void walk_block(const KdView& tree, const PointPacket& points, const AmbientSettings& settings, Walk walk,
+                RaySorter& sorter, int block, FreeRays* free_rays, Counts counts) {
+  const int n = settings.strata;
+  Frames frames;
+  make_frames(points, frames);
+  RayPacket rays;
+  begin_rays(points, settings, rays);
+  for (int s = 0; s < n * n; ++s) {
+    make_directions(points, frames, settings, {s, s % n, s / n, n}, points.live, rays);
+    if (walk == Walk::sorted)
+      sort_rays(tree, sorter, rays, block, settings.distance, free_rays, counts);
+    else
+      remove_rays(trace_any_from(tree, 0, rays, GlassRule::passes, counts.of(block)), free_rays[block]);
+  }
+}
+
+// For all blocks of a tile, for up to four, for one, and for one again that has much near it. Looking must
+// not take longer than what it saves.
+inline constexpr Effort kEfforts[] = {{2, 256, 256}, {2, 96, 64}, {2, 96, 32}, {8, 96, 16}};
+inline constexpr int kLevels = 4, kFirstOfOne = 2, kMostTriangles = 256;
+
+// Some blocks with one pool; where that would grow too large, a quarter of them at a time, and where a single
+// block has too much near it, its rays walk the tree.
+template <class Counts>
+void trace_group(const KdView& tree, const PointPacket* const* points, int first, int count, int level,
+                 const AmbientSettings& settings, const Parts& parts, RaySorter& sorter, FreeRays* out,
+                 Counts counts) {
+  const Reach reach = reach_of(tree, points + first, count, settings.distance);
+  Pool pool;
+  const uint64_t mark = counts.mark();
+  const Collected collected = collect(tree, reach, kEfforts[level], pool, counts);
+  counts.of(first).share(mark, count, [&](int i) { return points[first + i]->live; });
+  int part = level == 0 ? 4 : 1;
+  for (int i = first; i < first + count; i += part) {
+    if (collected == Collected::all) {
+      part = 1;
+      Frames frames;
+      make_frames(*points[i], frames);
+      Candidates candidates;
+      const uint64_t before = counts.mark();
+      counts.group_test(pool.count);
+      counts.of(i).share(before, 1, [&](int) { return points[i]->live; });
+      if (choose_candidates(tree, pool, *points[i], frames, parts, settings.distance, kMostTriangles,
+                            candidates) == Enough::candidates) {
+        test_block(tree, *points[i], frames, settings, parts, candidates, sorter, i, out, counts);
+        continue;
+      }
     }
-    for (int g = 0; g < kPacketSize; g += kLanes) {
-      if (group_empty(met, g)) continue;
-      const Uint free = load(count + g);
-      store(count + g, select(group_mask(met, g), free - Uint(1u), free));
+    const int next = part > 1 ? level + 1 : level < kFirstOfOne ? kFirstOfOne : level + 1;
+    if (next < kLevels) {
+      const int left = first + count - i;
+      trace_group(tree, points, i, left < part ? left : part, next, settings, parts, sorter, out, counts);
+    } else {
+      walk_block(tree, *points[i], settings, Walk::sorted, sorter, i, out, counts);
     }
   }
 }
 
-// Some blocks with one pool of triangles; where that grows too large, each with its own. When the blocks
-// lie close together beside the length of the rays, one of them has hardly less within its reach than all,
-// and the walk is left to find it.
 template <class Counts>
-void trace_group(const KdView& tree, const PointPacket* const* points, int count,
-                 const AmbientSettings& settings, FreeRays* out, Counts counts) {
-  // Squares of shorter lengths would fall among the denormal numbers.
-  const bool shortcuts = settings.shortcuts == Shortcuts::taken && settings.distance > 1e-12f;
-  const Reach reach = reach_of(tree, points, count, settings.distance);
-  // Collecting must not take longer than what it saves.
-  const int most_leaves = count * (16 + 2 * settings.strata * settings.strata);
-  const int most_candidates =
-      settings.strata < 6 ? 128 + 24 * settings.strata * settings.strata : kMaxCandidates;
-  TrianglePool pool;
-  const uint64_t mark = counts.mark();
-  const bool pooled = shortcuts && collect(tree, reach, most_leaves, pool, counts) == Collected::all;
-  counts.share(mark, count, [&](int i) { return points[i]->live; });
-  if (!pooled && shortcuts && count > 1 &&
-      largest_component(extent(as_box(reach.start))) > 2 * settings.distance) {
-    for (int i = 0; i < count; ++i) trace_group(tree, points + i, 1, settings, out + i, counts.of(i));
-    return;
-  }
+void trace_blocks(const KdView& tree, const PointPacket* const* points, int count,
+                  const AmbientSettings& settings, FreeRays* out, Counts counts) {
+  if (count == 0) return;
   RaySorter sorter;
   for (RayBin& bin : sorter.bins) bin.count = 0;
-  sorter.node = entry_node(tree, as_box(reach.box));
-  const Walk walk = shortcuts ? Walk::sorted : Walk::as_they_come;
+  sorter.node = entry_node(tree, as_box(reach_of(tree, points, count, settings.distance).box));
+  const uint32_t samples = static_cast<uint32_t>(settings.strata * settings.strata);
   for (int i = 0; i < count; ++i) {
-    Frames frames;
-    make_frames(*points[i], frames);
-    Candidates candidates;
-    candidates.count = kTooMany;
-    if (pooled) {
-      const uint64_t before = counts.mark();
-      counts.group_test(pool.count);
-      counts.of(i).share(before, 1, [&](int) { return points[i]->live; });
-      choose_candidates(tree, pool, *points[i], frames, settings.distance, most_candidates, candidates);
-    }
-    trace_block(tree, *points[i], frames, settings, candidates, walk, sorter, i, out, counts);
+    for (int g = 0; g < kPacketSize; g += kLanes) store(out[i].count + g, Uint(samples));
+  }
+  // Squares of shorter lengths would fall among the denormal numbers.
+  if (settings.shortcuts == Shortcuts::taken && settings.distance > 1e-12f) {
+    trace_group(tree, points, 0, count,
+                count > 4   ? 0
+                : count > 1 ? 1
+                            : kFirstOfOne,
+                settings, parts_of(settings.strata), sorter, out, counts);
+  } else {
+    for (int i = 0; i < count; ++i)
+      walk_block(tree, *points[i], settings, Walk::as_they_come, sorter, i, out, counts);
   }
   for (RayBin& bin : sorter.bins) {
     if (bin.count > 0) flush(tree, sorter, settings.distance, bin, out, counts);
@@ -244,21 +336,21 @@ void trace_group(const KdView& tree, const PointPacket* const* points, int count
 
 void count_ambient(const KdView& tree, const PointPacket* const* points, int count,
                    const AmbientSettings& settings, FreeRays* out, const WorkCounts& work) {
-  if (count > 0) trace_group(tree, points, count, settings, out, Counting{work.totals, work.work});
+  trace_blocks(tree, points, count, settings, out, Counting{work.totals, work.work});
 }
 
 #else
 
 void ambient_blocks(const KdView& tree, const PointPacket* const* points, int count,
                     const AmbientSettings& settings, FreeRays* out) {
-  if (count > 0) trace_group(tree, points, count, settings, out, NoCounts{});
+  trace_blocks(tree, points, count, settings, out, NoCounts{});
 }
 
 void ambient_occlusion(const KdView& tree, const PointPacket& points, const AmbientSettings& settings,
                        uint32_t* free_rays) {
   const PointPacket* const packet = &points;
   FreeRays free;
-  trace_group(tree, &packet, 1, settings, &free, NoCounts{});
+  trace_blocks(tree, &packet, 1, settings, &free, NoCounts{});
   for (int lane = 0; lane < kPacketSize; ++lane) free_rays[lane] = free.count[lane];
 }
 
