@@ -3,6 +3,7 @@
 #include "kernels/counts.h"
 #include "kernels/lanes.h"
 #include "kernels/meet.h"
+#include "kernels/sorter.h"
 #include "kernels/tables.h"
 #include "math/sampling.h"
 
@@ -134,82 +135,6 @@ void make_frames(const PointPacket& points, Frames& frames) {
   }
 }
 
-// Rays of several blocks, sorted by the signs of their directions and by the axis along which they run
-// fastest: packets of one kind visit the cells of the tree in one order and are tested without a choice
-// per lane.
-inline constexpr int kRayKinds = 24;
-struct alignas(64) RayBin {
-  static constexpr int kRoom = kPacketSize + 16;
-  float ox[kRoom], oy[kRoom], oz[kRoom], dx[kRoom], dy[kRoom], dz[kRoom];
-  uint32_t id[kRoom];  // 64 * block + lane
-  int count;
-};
-struct RaySorter {
-  RayBin bins[kRayKinds];
-  uint32_t node;  // where the walk begins
-};
-
-inline Uint kind_of(const Vec3T<Float>& d) {
-  const Float zero = Float(0.0f), x = absolute(d.x), y = absolute(d.y), z = absolute(d.z);
-  const auto bit = [](Mask m, uint32_t value) { return select(m, Uint(value), Uint(0u)); };
-  const Uint signs = bit(d.x < zero, 1) + bit(d.y < zero, 2) + bit(d.z < zero, 4);
-  const Mask x_leads = both(x > y, x > z), y_leads = both(invert(x_leads), y > z);
-  return signs + bit(x_leads, 8) + bit(y_leads, 16);
-}
-
-// Traces up to 64 rays of a bin and takes them out.
-template <class Counts>
-void flush(const KdView& tree, const RaySorter& sorter, float distance, RayBin& bin, FreeRays* free_rays,
-           Counts counts) {
-  const int n = bin.count < kPacketSize ? bin.count : kPacketSize;
-  RayPacket rays;
-  float* const to[6] = {rays.ox, rays.oy, rays.oz, rays.dx, rays.dy, rays.dz};
-  float* const from[6] = {bin.ox, bin.oy, bin.oz, bin.dx, bin.dy, bin.dz};
-  for (int a = 0; a < 6; ++a) {
-    std::memcpy(to[a], from[a], sizeof rays.ox);
-    std::memcpy(from[a], from[a] + kPacketSize, sizeof(float) * 16);
-  }
-  for (int g = 0; g < kPacketSize; g += kLanes) store(rays.tmax + g, Float(distance));
-  rays.tmin = 0;
-  rays.live = n == kPacketSize ? ~0ull : (1ull << n) - 1;
-  uint64_t met = counts.of_lanes(bin.id, n, [&](auto of_packet) {
-    return trace_any_from(tree, sorter.node, rays, GlassRule::passes, of_packet);
-  });
-  for (; met != 0; met &= met - 1) {
-    const uint32_t id = bin.id[__builtin_ctzll(met)];
-    --free_rays[id / kPacketSize].count[id % kPacketSize];
-  }
-  std::memcpy(bin.id, bin.id + kPacketSize, sizeof(uint32_t) * 16);
-  bin.count -= n;
-}
-
-// Puts the live rays of a block into the bins, and traces those that are full.
-template <class Counts>
-void sort_rays(const KdView& tree, RaySorter& sorter, const RayPacket& rays, int block, float distance,
-               FreeRays* free_rays, Counts counts) {
-  for (int g = 0; g < kPacketSize; g += kLanes) {
-    uint32_t left = bits(group_mask(rays.live, g));
-    if (left == 0) continue;
-    const Vec3T<Float> o = load3(rays.ox, rays.oy, rays.oz, g), d = load3(rays.dx, rays.dy, rays.dz, g);
-    const Uint id = lane_numbers() + Uint(static_cast<uint32_t>(block * kPacketSize + g)), kinds = kind_of(d);
-    uint32_t kind[kLanes];
-    store(kind, kinds);
-    while (left != 0) {
-      const uint32_t k = kind[__builtin_ctz(left)];
-      const uint32_t same = bits(kinds == Uint(k)) & left;
-      left &= ~same;
-      const Mask m = mask_of_bits(same);
-      RayBin& bin = sorter.bins[k];
-      const int n = bin.count;
-      compress(bin.ox + n, o.x, m), compress(bin.oy + n, o.y, m), compress(bin.oz + n, o.z, m);
-      compress(bin.dx + n, d.x, m), compress(bin.dy + n, d.y, m), compress(bin.dz + n, d.z, m);
-      compress(bin.id + n, id, m);
-      bin.count += __builtin_popcount(same);
-      if (bin.count >= kPacketSize) flush(tree, sorter, distance, bin, free_rays, counts);
-    }
-  }
-}
-
 void remove_rays(uint64_t met, FreeRays& rays) {
   for (int g = 0; g < kPacketSize; g += kLanes) {
     if (group_empty(met, g)) continue;
@@ -261,44 +186,54 @@ void walk_block(const KdView& tree, const PointPacket& points, const AmbientSett
   }
 }
 
-// For all blocks of a tile, for up to four, for one, and for one again that has much near it. Looking must
-// not take longer than what it saves.
-inline constexpr Effort kEfforts[] = {{2, 256, 256}, {2, 96, 64}, {2, 96, 32}, {8, 96, 16}};
-inline constexpr int kLevels = 4, kFirstOfOne = 2, kMostTriangles = 256;
+// How far it pays to look, for few samples and for many: for all blocks of a tile, for up to four, for one,
+// and for one again that has much near it.
+inline constexpr int kLevels = 4, kFirstOfOne = 2, kManyStrata = 6;
+struct Plan {
+  Effort effort[kLevels];
+  int most_triangles;
+};
+inline constexpr Plan kFewSamples = {{{2, 256, 192}, {2, 96, 48}, {2, 96, 32}, {8, 96, 16}}, 256};
+inline constexpr Plan kManySamples = {{{1, 512, 512}, {1, 256, 128}, {1, 192, 64}, {4, 128, 16}}, 512};
 
-// Some blocks with one pool; where that would grow too large, a quarter of them at a time, and where a single
-// block has too much near it, its rays walk the tree.
+// The blocks from `first` on with one pool; where that would grow too large, a quarter of them at a time, and
+// where a single block has too much near it, its rays walk the tree.
 template <class Counts>
 void trace_group(const KdView& tree, const PointPacket* const* points, int first, int count, int level,
                  const AmbientSettings& settings, const Parts& parts, RaySorter& sorter, FreeRays* out,
                  Counts counts) {
-  const Reach reach = reach_of(tree, points + first, count, settings.distance);
-  Pool pool;
-  const uint64_t mark = counts.mark();
-  const Collected collected = collect(tree, reach, kEfforts[level], pool, counts);
-  counts.of(first).share(mark, count, [&](int i) { return points[first + i]->live; });
-  int part = level == 0 ? 4 : 1;
-  for (int i = first; i < first + count; i += part) {
-    if (collected == Collected::all) {
-      part = 1;
-      Frames frames;
-      make_frames(*points[i], frames);
-      Candidates candidates;
-      const uint64_t before = counts.mark();
-      counts.group_test(pool.count);
-      counts.of(i).share(before, 1, [&](int) { return points[i]->live; });
-      if (choose_candidates(tree, pool, *points[i], frames, parts, settings.distance, kMostTriangles,
-                            candidates) == Enough::candidates) {
-        test_block(tree, *points[i], frames, settings, parts, candidates, sorter, i, out, counts);
-        continue;
-      }
-    }
-    const int next = part > 1 ? level + 1 : level < kFirstOfOne ? kFirstOfOne : level + 1;
-    if (next < kLevels) {
-      const int left = first + count - i;
-      trace_group(tree, points, i, left < part ? left : part, next, settings, parts, sorter, out, counts);
-    } else {
+  if (level == kLevels) {
+    for (int i = first; i < first + count; ++i)
       walk_block(tree, *points[i], settings, Walk::sorted, sorter, i, out, counts);
+    return;
+  }
+  const Plan& plan = settings.strata < kManyStrata ? kFewSamples : kManySamples;
+  Pool pool;
+  uint64_t mark = counts.mark();
+  const Collected collected = collect(tree, reach_of(tree, points + first, count, settings.distance),
+                                      plan.effort[level], pool, counts);
+  counts.of(first).share(mark, count, [&](int i) { return points[first + i]->live; });
+  if (collected == Collected::too_many) {
+    const int part = level == 0 ? 4 : 1;
+    for (int i = 0; i < count; i += part) {
+      trace_group(tree, points, first + i, count - i < part ? count - i : part, level + 1, settings, parts,
+                  sorter, out, counts);
+    }
+    return;
+  }
+  for (int i = first; i < first + count; ++i) {
+    Frames frames;
+    make_frames(*points[i], frames);
+    Candidates candidates;
+    mark = counts.mark();
+    counts.group_test(pool.count);
+    counts.of(i).share(mark, 1, [&](int) { return points[i]->live; });
+    if (choose_candidates(tree, pool, *points[i], frames, parts, settings.distance, plan.most_triangles,
+                          candidates) == Enough::candidates) {
+      test_block(tree, *points[i], frames, settings, parts, candidates, sorter, i, out, counts);
+    } else {
+      trace_group(tree, points, i, 1, level < kFirstOfOne ? kFirstOfOne : level + 1, settings, parts, sorter,
+                  out, counts);
     }
   }
 }
@@ -316,11 +251,8 @@ void trace_blocks(const KdView& tree, const PointPacket* const* points, int coun
   }
   // Squares of shorter lengths would fall among the denormal numbers.
   if (settings.shortcuts == Shortcuts::taken && settings.distance > 1e-12f) {
-    trace_group(tree, points, 0, count,
-                count > 4   ? 0
-                : count > 1 ? 1
-                            : kFirstOfOne,
-                settings, parts_of(settings.strata), sorter, out, counts);
+    const int level = count > 4 ? 0 : count > 1 ? 1 : kFirstOfOne;
+    trace_group(tree, points, 0, count, level, settings, parts_of(settings.strata), sorter, out, counts);
   } else {
     for (int i = 0; i < count; ++i)
       walk_block(tree, *points[i], settings, Walk::as_they_come, sorter, i, out, counts);

@@ -13,7 +13,7 @@
 namespace vitral {
 namespace VITRAL_ISA {
 
-inline constexpr int kMaxCandidates = 1024;
+inline constexpr int kMaxCandidates = 512;
 inline constexpr int kMaxParts = 16;
 
 // Whether the rays of a block are found among candidates, or walk the tree.
