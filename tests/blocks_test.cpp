@@ -211,6 +211,70 @@ TEST_P(BlocksOfEveryIsa, AmbientShortcutsCannotBeSeen) {
   EXPECT_GT(occluded, 3000u);
 }
 
+// A valley between two slopes of small bumps: from every point far more triangles are in reach than a list
+// can hold, and the opposite slope blocks many rays.
+std::vector<KdTriangle> valley(Random& random, const Vec3& at, float scale) {
+  constexpr size_t kSide = 80;
+  std::vector<Vec3> corners;
+  for (size_t i = 0; i <= kSide; ++i) {
+    for (size_t j = 0; j <= kSide; ++j) {
+      const float x = static_cast<float>(i) * 0.1f, z = static_cast<float>(j) * 0.1f;
+      const float height = absolute(x - 4) * 1.5f + random.between(0, 0.05f);
+      corners.push_back(at + Vec3{x, height, z} * scale);
+    }
+  }
+  std::vector<KdTriangle> out;
+  for (size_t i = 0; i < kSide; ++i) {
+    for (size_t j = 0; j < kSide; ++j) {
+      const size_t k = i * (kSide + 1) + j;
+      const uint32_t flags = (i * 7 + j) % 11 == 0 ? kGlassTriangle
+                             : (i + j) % 13 == 0   ? kCutOutTriangle
+                                                   : 0u;
+      add_triangle(out, corners[k], corners[k + 1], corners[k + kSide + 2], flags);
+      add_triangle(out, corners[k], corners[k + kSide + 2], corners[k + kSide + 1], flags);
+    }
+  }
+  return out;
+}
+
+TEST_P(BlocksOfEveryIsa, AmbientRaysOfADenseMeshEqualTheWalk) {
+  const Kernels& kernels = *GetParam();
+  uint64_t open = 0, occluded = 0, walked = 0;
+  for (const Place& place : {kPlaces[0], kPlaces[1], kPlaces[2]}) {
+    Random random(13);
+    const Tree tree(valley(random, place.at, place.scale), {left_half_only, nullptr});
+    for (int group = 0; group < 6; ++group) {
+      const std::vector<PointPacket> packets =
+          neighbours(random, tree.triangles, 0.2f * place.scale, group % 2 ? 0.3f : 0.0f);
+      const size_t count = group % 3 == 2 ? 3 : 16;
+      const auto points = pointers(packets, count);
+      AmbientSettings settings{group == 5 ? 6 : 1 + group % 4, (group % 2 ? 9.0f : 2.0f) * place.scale};
+      std::vector<FreeRays> taken(count), none(count), counted(count);
+      TraversalCounts totals;
+      kernels.ambient_blocks(tree.view, points.data(), static_cast<int>(count), settings, taken.data());
+      kernels.count_ambient(tree.view, points.data(), static_cast<int>(count), settings, counted.data(),
+                            {&totals, nullptr});
+      walked += totals.lanes_in_steps;
+      settings.shortcuts = Shortcuts::none;
+      kernels.ambient_blocks(tree.view, points.data(), static_cast<int>(count), settings, none.data());
+      for (size_t i = 0; i < count; ++i) {
+        for (int lane = 0; lane < kPacketSize; ++lane) {
+          if (!(packets[i].live >> lane & 1)) continue;
+          ASSERT_EQ(taken[i].count[lane], none[i].count[lane])
+              << kernels.isa << " group " << group << " packet " << i << " lane " << lane << " scale "
+              << place.scale;
+          ASSERT_EQ(counted[i].count[lane], none[i].count[lane]);
+          const uint32_t all = static_cast<uint32_t>(settings.strata * settings.strata);
+          ++(none[i].count[lane] == all ? open : occluded);
+        }
+      }
+    }
+  }
+  EXPECT_GT(open, 500u);
+  EXPECT_GT(occluded, 3000u);
+  EXPECT_GT(walked, 0u);
+}
+
 INSTANTIATE_TEST_SUITE_P(Trace, BlocksOfEveryIsa, testing::ValuesIn(available_kernels()),
                          [](const auto& instance) { return std::string(instance.param->isa); });
 
