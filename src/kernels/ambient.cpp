@@ -187,54 +187,91 @@ void walk_block(const KdView& tree, const PointPacket& points, const AmbientSett
 }
 
 // How far it pays to look, for few samples and for many: for all blocks of a tile, for up to four, for one,
-// and for one again that has much near it.
-inline constexpr int kLevels = 4, kFirstOfOne = 2, kManyStrata = 6;
+// and for one again that has much near it; how many triangles are too many; how often a block is cut in
+// parts.
+inline constexpr int kMostLevels = 4, kFirstOfOne = 2, kManyStrata = 6;
 struct Plan {
-  Effort effort[kLevels];
-  int most_triangles;
+  int levels;
+  Effort effort[kMostLevels];
+  int most_triangles, splits;
 };
-inline constexpr Plan kFewSamples = {{{2, 256, 192}, {2, 96, 48}, {2, 96, 32}, {8, 96, 16}}, 256};
-inline constexpr Plan kManySamples = {{{1, 512, 512}, {1, 256, 128}, {1, 192, 64}, {4, 128, 16}}, 512};
+inline constexpr Plan kFewSamples = {3, {{2, 256, 192}, {2, 96, 48}, {2, 96, 32}}, 256, 0};
+inline constexpr Plan kManySamples = {4, {{1, 512, 512}, {1, 256, 128}, {1, 192, 64}, {4, 128, 16}}, 512, 2};
 
-// The blocks from `first` on with one pool; where that would grow too large, a quarter of them at a time, and
-// where a single block has too much near it, its rays walk the tree.
+// Some blocks of those that are traced together, from number `block` on; a block that was split in parts
+// `splits` times counts as one.
+struct Group {
+  const PointPacket* const* points;
+  int count, block, splits;
+};
+
+// Points of a block that lie far apart, on surfaces at different depths, have too much between them: cuts its
+// longest axis in half.
+void split_block(const PointPacket& points, PointPacket* halves) {
+  const PointPacket* const packet = &points;
+  const Box box = as_box(start_of(&packet, 1));
+  const Vec3 size = extent(box);
+  const int axis = size.x > size.y && size.x > size.z ? 0 : size.y > size.z ? 1 : 2;
+  const float* const along = axis == 0 ? points.px : axis == 1 ? points.py : points.pz;
+  const Float middle = Float(component(center(box), axis));
+  uint64_t below = 0;
+  for (int g = 0; g < kPacketSize; g += kLanes)
+    below |= static_cast<uint64_t>(bits(load(along + g) < middle)) << g;
+  halves[0] = halves[1] = points;
+  halves[0].live &= below, halves[1].live &= ~below;
+}
+
+// The blocks with one pool; where that would grow too large, a quarter of them at a time, and where a single
+// block has too much near it, in parts; what is left then walks the tree.
 template <class Counts>
-void trace_group(const KdView& tree, const PointPacket* const* points, int first, int count, int level,
-                 const AmbientSettings& settings, const Parts& parts, RaySorter& sorter, FreeRays* out,
-                 Counts counts) {
-  if (level == kLevels) {
-    for (int i = first; i < first + count; ++i)
-      walk_block(tree, *points[i], settings, Walk::sorted, sorter, i, out, counts);
-    return;
-  }
+void trace_group(const KdView& tree, const Group& group, int level, const AmbientSettings& settings,
+                 const Parts& parts, RaySorter& sorter, FreeRays* out, Counts counts) {
   const Plan& plan = settings.strata < kManyStrata ? kFewSamples : kManySamples;
-  Pool pool;
-  uint64_t mark = counts.mark();
-  const Collected collected = collect(tree, reach_of(tree, points + first, count, settings.distance),
-                                      plan.effort[level], pool, counts);
-  counts.of(first).share(mark, count, [&](int i) { return points[first + i]->live; });
-  if (collected == Collected::too_many) {
-    const int part = level == 0 ? 4 : 1;
-    for (int i = 0; i < count; i += part) {
-      trace_group(tree, points, first + i, count - i < part ? count - i : part, level + 1, settings, parts,
-                  sorter, out, counts);
+  const auto trace_part = [&](int first, int count, int next) {
+    const Group part{group.points + first, count, group.block + first, group.splits};
+    trace_group(tree, part, next, settings, parts, sorter, out, counts);
+  };
+  if (level == plan.levels) {
+    const PointPacket& points = *group.points[0];
+    if (group.splits == plan.splits) {
+      walk_block(tree, points, settings, Walk::sorted, sorter, group.block, out, counts);
+      return;
+    }
+    PointPacket halves[2];
+    split_block(points, halves);
+    for (const PointPacket& half : halves) {
+      if (half.live == 0) continue;
+      const PointPacket* const packet = &half;
+      trace_group(tree, {&packet, 1, group.block, group.splits + 1}, kFirstOfOne, settings, parts, sorter,
+                  out, counts);
     }
     return;
   }
-  for (int i = first; i < first + count; ++i) {
+  Pool pool;
+  uint64_t mark = counts.mark();
+  const Collected collected = collect(tree, reach_of(tree, group.points, group.count, settings.distance),
+                                      plan.effort[level], pool, counts);
+  counts.of(group.block).share(mark, group.count, [&](int i) { return group.points[i]->live; });
+  if (collected == Collected::too_many) {
+    const int part = level == 0 ? 4 : 1;
+    for (int i = 0; i < group.count; i += part)
+      trace_part(i, group.count - i < part ? group.count - i : part, level + 1);
+    return;
+  }
+  for (int i = 0; i < group.count; ++i) {
+    const PointPacket& points = *group.points[i];
+    const int block = group.block + i;
     Frames frames;
-    make_frames(*points[i], frames);
+    make_frames(points, frames);
     Candidates candidates;
     mark = counts.mark();
     counts.group_test(pool.count);
-    counts.of(i).share(mark, 1, [&](int) { return points[i]->live; });
-    if (choose_candidates(tree, pool, *points[i], frames, parts, settings.distance, plan.most_triangles,
-                          candidates) == Enough::candidates) {
-      test_block(tree, *points[i], frames, settings, parts, candidates, sorter, i, out, counts);
-    } else {
-      trace_group(tree, points, i, 1, level < kFirstOfOne ? kFirstOfOne : level + 1, settings, parts, sorter,
-                  out, counts);
-    }
+    counts.of(block).share(mark, 1, [&](int) { return points.live; });
+    if (choose_candidates(tree, pool, points, frames, parts, settings.distance, plan.most_triangles,
+                          candidates) == Enough::candidates)
+      test_block(tree, points, frames, settings, parts, candidates, sorter, block, out, counts);
+    else
+      trace_part(i, 1, level < kFirstOfOne ? kFirstOfOne : level + 1);
   }
 }
 
@@ -252,7 +289,7 @@ void trace_blocks(const KdView& tree, const PointPacket* const* points, int coun
   // Squares of shorter lengths would fall among the denormal numbers.
   if (settings.shortcuts == Shortcuts::taken && settings.distance > 1e-12f) {
     const int level = count > 4 ? 0 : count > 1 ? 1 : kFirstOfOne;
-    trace_group(tree, points, 0, count, level, settings, parts_of(settings.strata), sorter, out, counts);
+    trace_group(tree, {points, count, 0, 0}, level, settings, parts_of(settings.strata), sorter, out, counts);
   } else {
     for (int i = 0; i < count; ++i)
       walk_block(tree, *points[i], settings, Walk::as_they_come, sorter, i, out, counts);

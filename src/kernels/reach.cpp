@@ -14,19 +14,32 @@ inline void set_component(Vec3& v, int axis, float x) {
 
 }  // namespace
 
+PlainBox start_of(const PointPacket* const* points, int count) {
+  Vec3T<Float> low = splat({kInfinity, kInfinity, kInfinity}), high = -low;
+  for (int i = 0; i < count; ++i) {
+    const PointPacket& p = *points[i];
+    for (int g = 0; g < kPacketSize; g += kLanes) {
+      const Mask live = group_mask(p.live, g);
+      const Vec3T<Float> at = load3(p.px, p.py, p.pz, g);
+      low = {least(select(live, at.x, low.x), low.x), least(select(live, at.y, low.y), low.y),
+             least(select(live, at.z, low.z), low.z)};
+      high = {greatest(select(live, at.x, high.x), high.x), greatest(select(live, at.y, high.y), high.y),
+              greatest(select(live, at.z, high.z), high.z)};
+    }
+  }
+  return {{least_lane(low.x), least_lane(low.y), least_lane(low.z)},
+          {greatest_lane(high.x), greatest_lane(high.y), greatest_lane(high.z)}};
+}
+
 Reach reach_of(const KdView& tree, const PointPacket* const* points, int count, float distance) {
-  Vec3T<Float> low = splat({kInfinity, kInfinity, kInfinity}), high = -low, sum = splat({0, 0, 0});
+  Vec3T<Float> sum = splat({0, 0, 0});
   Float least_offset = Float(kInfinity), most_offset = Float(0.0f);
   const Float zero = Float(0.0f);
   for (int i = 0; i < count; ++i) {
     const PointPacket& p = *points[i];
     for (int g = 0; g < kPacketSize; g += kLanes) {
       const Mask live = group_mask(p.live, g);
-      const Vec3T<Float> at = load3(p.px, p.py, p.pz, g), n = load3(p.gx, p.gy, p.gz, g);
-      low = {least(select(live, at.x, low.x), low.x), least(select(live, at.y, low.y), low.y),
-             least(select(live, at.z, low.z), low.z)};
-      high = {greatest(select(live, at.x, high.x), high.x), greatest(select(live, at.y, high.y), high.y),
-              greatest(select(live, at.z, high.z), high.z)};
+      const Vec3T<Float> n = load3(p.gx, p.gy, p.gz, g);
       sum = sum + Vec3T<Float>{select(live, n.x, zero), select(live, n.y, zero), select(live, n.z, zero)};
       const Float offset = load(p.offset + g);
       least_offset = least(select(live, offset, least_offset), least_offset);
@@ -34,8 +47,7 @@ Reach reach_of(const KdView& tree, const PointPacket* const* points, int count, 
     }
   }
   Reach reach;
-  reach.start = {{least_lane(low.x), least_lane(low.y), least_lane(low.z)},
-                 {greatest_lane(high.x), greatest_lane(high.y), greatest_lane(high.z)}};
+  reach.start = start_of(points, count);
   reach.radius = 0.50001f * length(extent(as_box(reach.start))) + greatest_lane(most_offset);
   reach.distance = distance;
   reach.magnitude = magnitude(as_box(reach.start));

@@ -22,6 +22,9 @@ struct Reach {
   float tilt;
   float floor;  // lower than this along the normal, less the tilt, is below the planes of all points
 };
+// The box of the live points.
+PlainBox start_of(const PointPacket* const* points, int count);
+
 Reach reach_of(const KdView& tree, const PointPacket* const* points, int count, float distance);
 
 static inline Vec3T<Float> splat(const Vec3& v) {
