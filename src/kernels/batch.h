@@ -87,7 +87,7 @@ static void bound_triangles(const View& view, int g, Batch& batch) {
   store(batch.doubt + g, reach * reach * Float(0x1p-18f) + Float(1e-36f));
 }
 
-static void fetch(const KdView& tree, const View& view, const uint32_t* ids, int count, Batch& batch) {
+static inline void fetch(const KdView& tree, const View& view, const uint32_t* ids, int count, Batch& batch) {
   batch.count = count;
   for (int i = 0; i < kBatch; ++i) {
     const uint32_t id = ids[i < count ? i : 0];

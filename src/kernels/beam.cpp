@@ -58,12 +58,6 @@ void enter_cells(const RayPacket* rays, const Shears* shears, int count, Cells& 
   }
 }
 
-Rectangle4 join(const Rectangle4& a, const Rectangle4& b) {
-  return {vitral::least(a.x0, b.x0), vitral::greatest(a.x1, b.x1), vitral::least(a.y0, b.y0),
-          vitral::greatest(a.y1, b.y1)};
-}
-inline constexpr Rectangle4 kNothing{kInfinity, -kInfinity, kInfinity, -kInfinity};
-
 // Bounds of a cell's live rays.
 Rectangle4 bounds_of(const Cells& cells, int cell) {
   Float x0 = Float(kInfinity), x1 = -x0, y0 = x0, y1 = x1;

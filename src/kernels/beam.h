@@ -40,13 +40,6 @@ static inline Part whole_part(const KdView& tree, const Beam& beam) {
   return p;
 }
 
-// Of a node that will be visited later.
-static inline void prefetch_below(const KdView& tree, const KdNode& n) {
-  const void* const children = tree.nodes + child(n);
-  const void* const references = tree.references + first_reference(n);
-  __builtin_prefetch(is_leaf(n) ? references : children);
-}
-
 // Does any ray pass through the part of the beam, for which it still matters what is there? In the plane of
 // the rays a box is at most as wide as its near or far end; the slack covers the roundings of that, too.
 // Where triangles are smaller than a pixel most nodes lie between the rays.

@@ -24,6 +24,11 @@ inline constexpr int kCellsOfGroup = kCells / kGroups;
 struct Rectangle4 {
   float x0, x1, y0, y1;
 };
+inline constexpr Rectangle4 kNothing{kInfinity, -kInfinity, kInfinity, -kInfinity};
+static inline Rectangle4 join(const Rectangle4& a, const Rectangle4& b) {
+  return {vitral::least(a.x0, b.x0), vitral::greatest(a.x1, b.x1), vitral::least(a.y0, b.y0),
+          vitral::greatest(a.y1, b.y1)};
+}
 
 struct alignas(64) Cells {
   int packets;
@@ -38,6 +43,13 @@ struct alignas(64) Cells {
   Rectangle4 group[kGroups];
   float group_far[kGroups], all_far;
 };
+
+// Of a node that will be visited later.
+static inline void prefetch_below(const KdView& tree, const KdNode& n) {
+  const void* const children = tree.nodes + child(n);
+  const void* const references = tree.references + first_reference(n);
+  __builtin_prefetch(is_leaf(n) ? references : children);
+}
 
 // A packet's lanes are rows of 8 pixels, a cell's are rows of 4.
 static inline int first_lane(int cell) {
@@ -67,11 +79,15 @@ static inline uint64_t packet_lanes(uint32_t lanes, int cell) {
   return ((l & 15) | (l & 0xf0) << 4 | (l & 0xf00) << 8 | (l & 0xf000) << 12) << first_lane(cell);
 }
 
-// The live rays of a packet.
-static inline uint64_t live_rays(const Cells& cells, int packet) {
+// The rays of a packet, from those of all cells.
+static inline uint64_t rays_of(const uint32_t* cells, int packet) {
   uint64_t lanes = 0;
-  for (int c = 0; c < kCellsOfPacket; ++c) lanes |= packet_lanes(cells.live[packet * kCellsOfPacket + c], c);
+  for (int c = 0; c < kCellsOfPacket; ++c) lanes |= packet_lanes(cells[packet * kCellsOfPacket + c], c);
   return lanes;
+}
+template <class AnyCells>
+static inline uint64_t live_rays(const AnyCells& cells, int packet) {
+  return rays_of(cells.live, packet);
 }
 
 // --- the exact test --------------------------------------------------------------------------------

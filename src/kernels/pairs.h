@@ -35,13 +35,14 @@ static inline void set_far(Cells& cells, uint64_t changed) {
   }
 }
 
-static inline Rectangles cell_bounds(const Cells& cells, int at) {
+template <class AnyCells>
+static inline Rectangles cell_bounds(const AnyCells& cells, int at) {
   return {load(cells.x0 + at), load(cells.x1 + at), load(cells.y0 + at), load(cells.y1 + at)};
 }
 
 // What has been counted since the mark was done for all rays together.
-template <class Counts>
-static inline void share_work(uint64_t mark, const Cells& cells, Counts counts) {
+template <class AnyCells, class Counts>
+static inline void share_work(uint64_t mark, const AnyCells& cells, Counts counts) {
   counts.share(mark, cells.packets, [&](int i) { return live_rays(cells, i); });
 }
 
@@ -57,7 +58,7 @@ struct alignas(64) Pairs {
 
 // The cells from `at` on that may have rays with all edge values of triangle i of one sign: not those where
 // one is surely negative and another surely positive.
-static inline Mask within_edges(const Cells& cells, int at, const Batch& batch, int i) {
+static inline Mask may_meet(const Cells& cells, int at, const Batch& batch, int i) {
   const Rectangles bounds = cell_bounds(cells, at);
   Float highest = Float(-kInfinity), lowest = Float(kInfinity);
   for (const Line& edge : batch.edge) {
@@ -69,21 +70,23 @@ static inline Mask within_edges(const Cells& cells, int at, const Batch& batch, 
 }
 
 // Appends the pairs of triangle i of the batch and cells of a group that it can touch.
-static inline int add_touched(const Cells& cells, int group, const Batch& batch, int i, uint32_t* pairs,
+template <class AnyCells, class AnyBatch>
+static inline int add_touched(const AnyCells& cells, int group, const AnyBatch& batch, int i, uint32_t* pairs,
                               int count) {
   const Rectangles triangle{Float(batch.x0[i]), Float(batch.x1[i]), Float(batch.y0[i]), Float(batch.y1[i])};
   const Float nearest = Float(batch.nearest[i]);
   for (int g = 0; g < kCellsOfGroup; g += kLanes) {
     const int at = group * kCellsOfGroup + g;
     Mask m = both(overlap(triangle, cell_bounds(cells, at)), nearest <= load(cells.far + at));
-    if (__builtin_popcount(bits(m)) > kFewCells) m = both(m, within_edges(cells, at, batch, i));
+    if (__builtin_popcount(bits(m)) > kFewCells) m = both(m, may_meet(cells, at, batch, i));
     compress(pairs + count, lane_numbers() + Uint(static_cast<uint32_t>(kCells * i + at)), m);
     count += __builtin_popcount(bits(m));
   }
   return count;
 }
 
-static inline int find_pairs(const Cells& cells, const Batch& batch, uint32_t* pairs) {
+template <class AnyCells, class AnyBatch>
+static inline int find_pairs(const AnyCells& cells, const AnyBatch& batch, uint32_t* pairs) {
   int count = 0;
   for (int group = 0; group < kGroups; ++group) {
     const Rectangle4& r = cells.group[group];
