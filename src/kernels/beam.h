@@ -1,7 +1,7 @@
 // A beam walks the tree: all rays from one point that run fastest along the same axis, front to back.
 #pragma once
 #include "kernels/counts.h"
-#include "kernels/pairs.h"
+#include "kernels/tile_walk.h"
 
 namespace vitral {
 namespace VITRAL_ISA {
@@ -12,12 +12,6 @@ struct Beam {
   float least[3], greatest[3];
   float origin[3];
   float slack;
-};
-
-// A part of the beam: the depths between which it is in a node's box, and that box, relative to the origin.
-struct Part {
-  float z0, z1;
-  float bound[2][3];  // least, greatest
 };
 
 // The whole tree's; z0 > z1 when the beam misses it.
@@ -60,25 +54,11 @@ static inline bool is_wanted(const Beam& beam, const Cells& cells, const Part& p
     const Mask m = both(overlap(bounds, cell_bounds(cells, at)), z0 <= load(cells.far + at));
     open |= static_cast<uint64_t>(bits(m)) << at;
   }
-  if (__builtin_popcountll(open) > kFewCells) return true;
-  for (; open != 0; open &= open - 1) {
-    const int cell = __builtin_ctzll(open);
-    uint32_t through = 0;
-    for (int g = 0; g < kCellSize; g += kLanes) {
-      const int at = cell * kCellSize + g;
-      const Float x = load(cells.sx + at), y = load(cells.sy + at);
-      const Mask m = both(overlap(bounds, {x, x, y, y}), z0 <= load(cells.high + at));
-      through |= bits(m) << g;
-    }
-    if ((through & cells.live[cell]) != 0) return true;
-  }
-  return false;
+  return any_ray_passes(cells, open, [&](int at) {
+    const Float x = load(cells.sx + at), y = load(cells.sy + at);
+    return both(overlap(bounds, {x, x, y, y}), z0 <= load(cells.high + at));
+  });
 }
-
-struct Waiting {
-  uint32_t node;
-  Part part;
-};
 
 // Goes on from a node to the leaf nearest to the origin. The child on the origin's side of a plane comes
 // first, so that leaves come in order of depth; the other waits, unless the beam, grown by the slack, surely
@@ -126,40 +106,23 @@ static uint32_t descend(const KdView& tree, const Beam& beam, uint32_t node, Par
 // ray passes through it for which it still matters.
 template <class Counts>
 static void walk_beam(const KdView& tree, const Beam& beam, Cells& cells, Counts counts) {
-  Part now = whole_part(tree, beam);
-  if (!(now.z0 <= now.z1)) return;
-  constexpr int kSeen = 1024;  // triangles met lately: all rays have been tested that they can touch
-  uint32_t seen[kSeen];
-  for (int i = 0; i < kSeen; ++i) seen[i] = kNoTriangle;
-  uint32_t ids[kBatch];
-  int gathered = 0;
-  Waiting stack[kMaxTreeDepth];
-  int waiting = 0;
-  uint32_t node = 0;
-  for (;;) {
-    const uint64_t mark = counts.mark();
-    const KdNode& leaf = tree.nodes[descend(tree, beam, node, now, stack, waiting, counts)];
-    share_work(mark, cells, counts);
-    for (uint32_t i = 0; i < count(leaf); ++i) {
-      const uint32_t id = tree.references[first_reference(leaf) + i];
-      __builtin_prefetch(&tree.triangles[id]);
-      ids[gathered] = id;
-      gathered += seen[id % kSeen] != id;
-      seen[id % kSeen] = id;
-      if (gathered < kBatch) continue;
-      meet(tree, beam.view, ids, gathered, cells, counts);
-      gathered = 0;
-    }
-    do {
-      if (waiting == 0) {
-        if (gathered > 0) meet(tree, beam.view, ids, gathered, cells, counts);
-        return;
-      }
-      --waiting;
-      node = stack[waiting].node, now = stack[waiting].part;
-    } while (cells.all_far < now.z0 || !is_wanted(beam, cells, now));
-    now.z1 = vitral::least(now.z1, cells.all_far);
-  }
+  walk_tile(
+      tree, whole_part(tree, beam),
+      [&](uint32_t node, Part& now, Waiting* stack, int& waiting) {
+        const uint64_t mark = counts.mark();
+        const uint32_t leaf = descend(tree, beam, node, now, stack, waiting, counts);
+        share_work(mark, cells, counts);
+        return leaf;
+      },
+      [&](const uint32_t* ids, int count) {
+        meet(tree, beam.view, ids, count, cells, counts);
+        return Use::more;
+      },
+      [&](Part& now) {
+        if (cells.all_far < now.z0 || !is_wanted(beam, cells, now)) return false;
+        now.z1 = vitral::least(now.z1, cells.all_far);
+        return true;
+      });
 }
 
 }  // namespace VITRAL_ISA

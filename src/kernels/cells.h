@@ -44,13 +44,6 @@ struct alignas(64) Cells {
   float group_far[kGroups], all_far;
 };
 
-// Of a node that will be visited later.
-static inline void prefetch_below(const KdView& tree, const KdNode& n) {
-  const void* const children = tree.nodes + child(n);
-  const void* const references = tree.references + first_reference(n);
-  __builtin_prefetch(is_leaf(n) ? references : children);
-}
-
 // A packet's lanes are rows of 8 pixels, a cell's are rows of 4.
 static inline int first_lane(int cell) {
   return (cell >> 1 & 1) * 32 + (cell & 1) * 4;

@@ -24,6 +24,26 @@ static inline void store3(float* x, float* y, float* z, int g, const Vec3T<Float
   store(x + g, v.x), store(y + g, v.y), store(z + g, v.z);
 }
 
+// The box of the points in each lane.
+struct BoxLanes {
+  Vec3T<Float> low, high;
+};
+static inline BoxLanes no_box() {
+  const Float none = Float(kInfinity);
+  return {{none, none, none}, {-none, -none, -none}};
+}
+static inline void extend(BoxLanes& box, Mask m, const Vec3T<Float>& p) {
+  box.low = {least(select(m, p.x, box.low.x), box.low.x), least(select(m, p.y, box.low.y), box.low.y),
+             least(select(m, p.z, box.low.z), box.low.z)};
+  box.high = {greatest(select(m, p.x, box.high.x), box.high.x),
+              greatest(select(m, p.y, box.high.y), box.high.y),
+              greatest(select(m, p.z, box.high.z), box.high.z)};
+}
+static inline PlainBox box_of(const BoxLanes& box) {
+  return {{least_lane(box.low.x), least_lane(box.low.y), least_lane(box.low.z)},
+          {greatest_lane(box.high.x), greatest_lane(box.high.y), greatest_lane(box.high.z)}};
+}
+
 static inline void set_origins(const PointPacket& points, RayPacket& rays) {
   for (int g = 0; g < kPacketSize; g += kLanes) {
     const Vec3T<Float> p = load3(points.px, points.py, points.pz, g);

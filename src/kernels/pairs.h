@@ -56,17 +56,27 @@ struct alignas(64) Pairs {
   Pair covered[kBatch * kCells];
 };
 
+// Of triangle i's edge values over a rectangle: one is nowhere less than `highest`, one nowhere greater than
+// `lowest`.
+struct Extremes {
+  Float highest, lowest;
+};
+static inline Extremes extremes_of(const Line* edges, int i, const Rectangles& bounds) {
+  Extremes out{Float(-kInfinity), Float(kInfinity)};
+  for (int k = 0; k < 3; ++k) {
+    const Span e = span_of(Float(edges[k].x[i]), Float(edges[k].y[i]), Float(edges[k].c[i]), bounds);
+    out = {greatest(e.least, out.highest), least(e.greatest, out.lowest)};
+  }
+  return out;
+}
+
 // The cells from `at` on that may have rays with all edge values of triangle i of one sign: not those where
 // one is surely negative and another surely positive.
 static inline Mask may_meet(const Cells& cells, int at, const Batch& batch, int i) {
   const Rectangles bounds = cell_bounds(cells, at);
-  Float highest = Float(-kInfinity), lowest = Float(kInfinity);
-  for (const Line& edge : batch.edge) {
-    const Span e = span_of(Float(edge.x[i]), Float(edge.y[i]), Float(edge.c[i]), bounds);
-    highest = greatest(e.least, highest), lowest = least(e.greatest, lowest);
-  }
+  const Extremes edge = extremes_of(batch.edge, i, bounds);
   const Float doubt = Float(batch.doubt[i]);
-  return invert(both(highest > doubt, lowest < -doubt));
+  return invert(both(edge.highest > doubt, edge.lowest < -doubt));
 }
 
 // Appends the pairs of triangle i of the batch and cells of a group that it can touch.

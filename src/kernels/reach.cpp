@@ -15,20 +15,13 @@ inline void set_component(Vec3& v, int axis, float x) {
 }  // namespace
 
 PlainBox start_of(const PointPacket* const* points, int count) {
-  Vec3T<Float> low = splat({kInfinity, kInfinity, kInfinity}), high = -low;
+  BoxLanes box = no_box();
   for (int i = 0; i < count; ++i) {
     const PointPacket& p = *points[i];
-    for (int g = 0; g < kPacketSize; g += kLanes) {
-      const Mask live = group_mask(p.live, g);
-      const Vec3T<Float> at = load3(p.px, p.py, p.pz, g);
-      low = {least(select(live, at.x, low.x), low.x), least(select(live, at.y, low.y), low.y),
-             least(select(live, at.z, low.z), low.z)};
-      high = {greatest(select(live, at.x, high.x), high.x), greatest(select(live, at.y, high.y), high.y),
-              greatest(select(live, at.z, high.z), high.z)};
-    }
+    for (int g = 0; g < kPacketSize; g += kLanes)
+      extend(box, group_mask(p.live, g), load3(p.px, p.py, p.pz, g));
   }
-  return {{least_lane(low.x), least_lane(low.y), least_lane(low.z)},
-          {greatest_lane(high.x), greatest_lane(high.y), greatest_lane(high.z)}};
+  return box_of(box);
 }
 
 Reach reach_of(const KdView& tree, const PointPacket* const* points, int count, float distance) {

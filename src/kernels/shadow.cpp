@@ -30,46 +30,23 @@ inline constexpr int kMostEffort = 4096;
 
 // Walks the tree from the light towards the rays, and tests what stands in the leaves. A node is skipped when
 // no open ray passes through it.
-enum class Walked { through, in_part };
 template <class Counts>
 Walked walk(const KdView& tree, const LightFrame& frame, GlassRule glass, float reach, ShadowCells& cells,
             Counts counts) {
   const Shaft shaft = make_shaft(tree, frame, cells.starts, reach);
-  Part now = whole_part(tree, shaft, frame, cells.starts);
-  if (!(now.z0 <= now.z1)) return Walked::through;
-  constexpr int kSeen = 1024;  // triangles met lately: all rays have been tested that they can touch
-  uint32_t seen[kSeen];
-  for (int i = 0; i < kSeen; ++i) seen[i] = kNoTriangle;
-  uint32_t ids[kBatch];
-  int gathered = 0;
-  Waiting stack[kMaxTreeDepth];
-  int waiting = 0;
-  uint32_t node = 0;
-  for (;;) {
-    const uint64_t mark = counts.mark();
-    const KdNode& leaf = tree.nodes[descend(tree, shaft, node, now, stack, waiting, counts)];
-    share_work(mark, cells, counts);
-    for (uint32_t i = 0; i < count(leaf); ++i) {
-      const uint32_t id = tree.references[first_reference(leaf) + i];
-      __builtin_prefetch(&tree.triangles[id]);
-      ids[gathered] = id;
-      gathered += seen[id % kSeen] != id;
-      seen[id % kSeen] = id;
-      if (gathered < kBatch) continue;
-      meet(tree, glass, ids, gathered, cells, counts);
-      gathered = 0;
-      if (cells.all_far == -kInfinity) return Walked::through;
-      if (cells.effort > kMostEffort) return Walked::in_part;
-    }
-    do {
-      if (waiting == 0) {
-        if (gathered > 0) meet(tree, glass, ids, gathered, cells, counts);
-        return Walked::through;
-      }
-      --waiting;
-      node = stack[waiting].node, now = stack[waiting].part;
-    } while (!is_wanted(shaft, frame, cells, now));
-  }
+  return walk_tile(
+      tree, whole_part(tree, shaft, frame, cells.starts),
+      [&](uint32_t node, Part& now, Waiting* stack, int& waiting) {
+        const uint64_t mark = counts.mark();
+        const uint32_t leaf = descend(tree, shaft, node, now, stack, waiting, counts);
+        share_work(mark, cells, counts);
+        return leaf;
+      },
+      [&](const uint32_t* ids, int count) {
+        meet(tree, glass, ids, count, cells, counts);
+        return cells.all_far == -kInfinity || cells.effort > kMostEffort ? Use::enough : Use::more;
+      },
+      [&](const Part& now) { return is_wanted(shaft, frame, cells, now); });
 }
 
 // --- a tile ----------------------------------------------------------------------------------------
@@ -87,19 +64,12 @@ LightFrame make_frame(const Vec3& direction, const Box& box) {
 }
 
 Box box_of(const RayPacket* rays, const uint64_t* lanes, int count) {
-  Vec3T<Float> low{Float(kInfinity), Float(kInfinity), Float(kInfinity)}, high = -low;
+  BoxLanes box = no_box();
   for (int i = 0; i < count; ++i) {
-    for (int g = 0; g < kPacketSize; g += kLanes) {
-      const Vec3T<Float> o{load(rays[i].ox + g), load(rays[i].oy + g), load(rays[i].oz + g)};
-      const Mask live = group_mask(lanes[i], g);
-      low = {least(select(live, o.x, low.x), low.x), least(select(live, o.y, low.y), low.y),
-             least(select(live, o.z, low.z), low.z)};
-      high = {greatest(select(live, o.x, high.x), high.x), greatest(select(live, o.y, high.y), high.y),
-              greatest(select(live, o.z, high.z), high.z)};
-    }
+    for (int g = 0; g < kPacketSize; g += kLanes)
+      extend(box, group_mask(lanes[i], g), load3(rays[i].ox, rays[i].oy, rays[i].oz, g));
   }
-  return {{least_lane(low.x), least_lane(low.y), least_lane(low.z)},
-          {greatest_lane(high.x), greatest_lane(high.y), greatest_lane(high.z)}};
+  return as_box(box_of(box));
 }
 
 // The live rays that can be traced.

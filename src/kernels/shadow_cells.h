@@ -3,6 +3,7 @@
 #include "kernels/casters.h"
 #include "kernels/cells.h"
 #include "kernels/counts.h"
+#include "kernels/lanes.h"
 #include "kernels/pairs.h"
 
 namespace vitral {
@@ -34,18 +35,14 @@ struct alignas(64) ShadowCells {
 
 // Bounds a cell's open rays.
 static void bound_cell(ShadowCells& cells, int cell) {
-  Float x0 = Float(kInfinity), x1 = -x0, y0 = x0, y1 = x1, z0 = x0, z1 = x1;
-  for (int g = 0; g < kCellSize; g += kLanes) {
-    const Mask m = mask_of_bits(cells.live[cell] >> g);
-    const int at = cell * kCellSize + g;
-    const Float x = load(cells.x + at), y = load(cells.y + at), z = load(cells.z + at);
-    x0 = least(select(m, x, x0), x0), x1 = greatest(select(m, x, x1), x1);
-    y0 = least(select(m, y, y0), y0), y1 = greatest(select(m, y, y1), y1);
-    z0 = least(select(m, z, z0), z0), z1 = greatest(select(m, z, z1), z1);
-  }
-  cells.x0[cell] = least_lane(x0), cells.x1[cell] = greatest_lane(x1);
-  cells.y0[cell] = least_lane(y0), cells.y1[cell] = greatest_lane(y1);
-  cells.far[cell] = -least_lane(z0), cells.z1[cell] = greatest_lane(z1);
+  BoxLanes lanes = no_box();
+  for (int g = 0; g < kCellSize; g += kLanes)
+    extend(lanes, mask_of_bits(cells.live[cell] >> g),
+           load3(cells.x, cells.y, cells.z, cell * kCellSize + g));
+  const PlainBox box = box_of(lanes);
+  cells.x0[cell] = box.min.x, cells.x1[cell] = box.max.x;
+  cells.y0[cell] = box.min.y, cells.y1[cell] = box.max.y;
+  cells.far[cell] = -box.min.z, cells.z1[cell] = box.max.z;
 }
 
 static void bound_groups(ShadowCells& cells) {
@@ -73,20 +70,15 @@ static inline Vec3T<Float> origins(const LightFrame& frame, const RayPacket& ray
 }
 
 // Bounds the rays that can be traced, all together.
-static Starts bound_rays(const LightFrame& frame, const RayPacket* rays, const uint64_t* lanes, int count) {
-  Float x0 = Float(kInfinity), y0 = x0, z0 = x0, x1 = Float(-kInfinity), y1 = x1, z1 = x1;
+static Starts bound_rays(const LightFrame& frame, const RayPacket* rays, const uint64_t* lanes_of,
+                         int count) {
+  BoxLanes lanes = no_box();
   for (int i = 0; i < count; ++i) {
-    for (int g = 0; g < kPacketSize; g += kLanes) {
-      const Mask m = group_mask(lanes[i], g);
-      const Vec3T<Float> p = origins(frame, rays[i], g);
-      x0 = least(select(m, p.x, x0), x0), x1 = greatest(select(m, p.x, x1), x1);
-      y0 = least(select(m, p.y, y0), y0), y1 = greatest(select(m, p.y, y1), y1);
-      z0 = least(select(m, p.z, z0), z0), z1 = greatest(select(m, p.z, z1), z1);
-    }
+    for (int g = 0; g < kPacketSize; g += kLanes)
+      extend(lanes, group_mask(lanes_of[i], g), origins(frame, rays[i], g));
   }
-  return {{least_lane(x0), greatest_lane(x1), least_lane(y0), greatest_lane(y1)},
-          least_lane(z0),
-          greatest_lane(z1)};
+  const PlainBox box = box_of(lanes);
+  return {{box.min.x, box.max.x, box.min.y, box.max.y}, box.min.z, box.max.z};
 }
 
 // Brings the rays to the cells, and bounds these.
@@ -115,14 +107,10 @@ static void enter_cells(ShadowCells& cells) {
 // The cells from `at` on that may have rays that caster i blocks.
 static inline Mask may_meet(const ShadowCells& cells, int at, const Casters& casters, int i) {
   const Rectangles bounds = cell_bounds(cells, at);
-  Float highest = Float(-kInfinity), lowest = Float(kInfinity);
-  for (const Line& edge : casters.edge) {
-    const Span e = span_of(Float(edge.x[i]), Float(edge.y[i]), Float(edge.c[i]), bounds);
-    highest = greatest(e.least, highest), lowest = least(e.greatest, lowest);
-  }
+  const Extremes edge = extremes_of(casters.edge, i, bounds);
   const Span plane = span_of(Float(casters.nx[i]), Float(casters.ny[i]), Float(casters.nz[i]),
                              Float(casters.n0[i]), bounds, -load(cells.far + at), load(cells.z1 + at));
-  const Mask outside = both(highest > Float(casters.gate[i]), lowest < Float(-casters.doubt[i]));
+  const Mask outside = both(edge.highest > Float(casters.gate[i]), edge.lowest < Float(-casters.doubt[i]));
   return invert(either(outside, plane.greatest < Float(-casters.beyond[i])));
 }
 

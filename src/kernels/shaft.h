@@ -2,16 +2,10 @@
 #pragma once
 #include "kernels/counts.h"
 #include "kernels/shadow_cells.h"
+#include "kernels/tile_walk.h"
 
 namespace vitral {
 namespace VITRAL_ISA {
-
-// A part of the tile's rays: the depths between which they are in a node's box, and that box, relative to the
-// reference.
-struct Part {
-  float z0, z1;
-  float bound[2][3];  // least, greatest
-};
 
 // The rays of a tile: at depth z, axis by axis, they are between low + slope z and high + slope z.
 struct Shaft {
@@ -90,24 +84,11 @@ static bool is_wanted(const Shaft& shaft, const LightFrame& frame, const ShadowC
              load(cells.far + at) > Float(-kInfinity));
     open |= static_cast<uint64_t>(bits(m)) << at;
   }
-  if (__builtin_popcountll(open) > kFewCells) return true;
-  for (; open != 0; open &= open - 1) {
-    const int cell = __builtin_ctzll(open);
-    uint32_t through = 0;
-    for (int g = 0; g < kCellSize; g += kLanes) {
-      const int at = cell * kCellSize + g;
-      const Float x = load(cells.x + at), y = load(cells.y + at);
-      through |= bits(passes(x, x, y, y, load(cells.z + at) - Float(slack))) << g;
-    }
-    if ((through & cells.live[cell]) != 0) return true;
-  }
-  return false;
+  return any_ray_passes(cells, open, [&](int at) {
+    const Float x = load(cells.x + at), y = load(cells.y + at);
+    return passes(x, x, y, y, load(cells.z + at) - Float(slack));
+  });
 }
-
-struct Waiting {
-  uint32_t node;
-  Part part;
-};
 
 // Goes on from a node to the leaf nearest to the light.
 template <class Counts>
