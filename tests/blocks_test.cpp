@@ -178,6 +178,27 @@ TEST_P(BlocksOfEveryIsa, ShadowsEqualTheWalkRayForRay) {
   EXPECT_GT(lit_blocks, 100u);
 }
 
+void expect_equal_rays(const std::vector<PointPacket>& packets, const std::vector<FreeRays>& found,
+                       const std::vector<FreeRays>& expected) {
+  for (size_t i = 0; i < found.size(); ++i) {
+    for (int lane = 0; lane < kPacketSize; ++lane) {
+      if (!(packets[i].live >> lane & 1)) continue;
+      ASSERT_EQ(found[i].count[lane], expected[i].count[lane]) << "packet " << i << " lane " << lane;
+    }
+  }
+}
+
+// Adds the points of which all rays are free, and the others.
+void count_points(const std::vector<PointPacket>& packets, const std::vector<FreeRays>& rays, int strata,
+                  uint64_t& open, uint64_t& occluded) {
+  for (size_t i = 0; i < rays.size(); ++i) {
+    for (int lane = 0; lane < kPacketSize; ++lane) {
+      if (packets[i].live >> lane & 1)
+        ++(rays[i].count[lane] == static_cast<uint32_t>(strata * strata) ? open : occluded);
+    }
+  }
+}
+
 TEST_P(BlocksOfEveryIsa, AmbientShortcutsCannotBeSeen) {
   const Kernels& kernels = *GetParam();
   uint64_t open = 0, occluded = 0;
@@ -195,16 +216,11 @@ TEST_P(BlocksOfEveryIsa, AmbientShortcutsCannotBeSeen) {
       kernels.ambient_blocks(tree.view, points.data(), kPackets, settings, taken.data());
       settings.shortcuts = Shortcuts::none;
       kernels.ambient_blocks(tree.view, points.data(), kPackets, settings, none.data());
-      for (size_t i = 0; i < kPackets; ++i) {
-        for (int lane = 0; lane < kPacketSize; ++lane) {
-          if (!(packets[i].live >> lane & 1)) continue;
-          ASSERT_EQ(taken[i].count[lane], none[i].count[lane])
-              << kernels.isa << " group " << group << " packet " << i << " lane " << lane << " scale "
-              << place.scale;
-          const uint32_t all = static_cast<uint32_t>(settings.strata * settings.strata);
-          ++(none[i].count[lane] == all ? open : occluded);
-        }
-      }
+      SCOPED_TRACE(std::string(kernels.isa) + " group " + std::to_string(group) + " scale " +
+                   std::to_string(place.scale));
+      expect_equal_rays(packets, taken, none);
+      count_points(packets, none, settings.strata, open, occluded);
+      if (HasFailure()) return;
     }
   }
   EXPECT_GT(open, 3000u);
@@ -257,17 +273,12 @@ TEST_P(BlocksOfEveryIsa, AmbientRaysOfADenseMeshEqualTheWalk) {
       walked += totals.lanes_in_steps;
       settings.shortcuts = Shortcuts::none;
       kernels.ambient_blocks(tree.view, points.data(), static_cast<int>(count), settings, none.data());
-      for (size_t i = 0; i < count; ++i) {
-        for (int lane = 0; lane < kPacketSize; ++lane) {
-          if (!(packets[i].live >> lane & 1)) continue;
-          ASSERT_EQ(taken[i].count[lane], none[i].count[lane])
-              << kernels.isa << " group " << group << " packet " << i << " lane " << lane << " scale "
-              << place.scale;
-          ASSERT_EQ(counted[i].count[lane], none[i].count[lane]);
-          const uint32_t all = static_cast<uint32_t>(settings.strata * settings.strata);
-          ++(none[i].count[lane] == all ? open : occluded);
-        }
-      }
+      SCOPED_TRACE(std::string(kernels.isa) + " group " + std::to_string(group) + " scale " +
+                   std::to_string(place.scale));
+      expect_equal_rays(packets, taken, none);
+      expect_equal_rays(packets, counted, none);
+      count_points(packets, none, settings.strata, open, occluded);
+      if (HasFailure()) return;
     }
   }
   EXPECT_GT(open, 500u);

@@ -5,6 +5,7 @@
 #include "kernels/meet.h"
 #include "kernels/sorter.h"
 #include "kernels/tables.h"
+#include "kernels/trace.h"
 #include "math/sampling.h"
 
 namespace vitral {

@@ -57,11 +57,5 @@ struct Candidates {
 Enough choose_candidates(const KdView& tree, const Pool& pool, const PointPacket& points,
                          const Frames& frames, const Parts& parts, float distance, int most, Candidates& out);
 
-// In trace.cpp: the any-hit walk below a node.
-uint64_t trace_any_from(const KdView& tree, uint32_t node, const RayPacket& rays, GlassRule glass,
-                        NoCounts counts);
-uint64_t trace_any_from(const KdView& tree, uint32_t node, const RayPacket& rays, GlassRule glass,
-                        Counting counts);
-
 }  // namespace VITRAL_ISA
 }  // namespace vitral

@@ -9,7 +9,6 @@
 // None of this decides what it cannot be sure of. Every comparison is by a margin that covers the
 // rounding of both this file's arithmetic and the exact test's (kdtree/triangle.h); where it falls in
 // between, the exact test is made. So the answer is that of the walk through the tree, ray for ray.
-#include "kernels/candidates.h"
 #include "kernels/counts.h"
 #include "kernels/lanes.h"
 #include "kernels/meet.h"
@@ -17,6 +16,7 @@
 #include "kernels/shadow_cells.h"
 #include "kernels/shaft.h"
 #include "kernels/tables.h"
+#include "kernels/trace.h"
 
 namespace vitral {
 namespace VITRAL_ISA {

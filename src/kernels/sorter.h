@@ -1,9 +1,9 @@
 // Rays of several blocks that walk the tree, sorted so that those of a packet have much in common.
 #pragma once
-#include "kernels/candidates.h"
 #include "kernels/counts.h"
 #include "kernels/lanes.h"
 #include "kernels/meet.h"
+#include "kernels/trace.h"
 
 namespace vitral {
 namespace VITRAL_ISA {

@@ -6,8 +6,8 @@
 // the other (Wald, "Realtime Ray Tracing and Interactive Global Illumination", 2004, chapter 7).
 //
 // Every ray's answer is a function of the ray and the triangles alone: the same bits as walk.cpp.
+#include "kernels/trace.h"
 #include "kdtree/kdtree.h"
-#include "kernels/candidates.h"
 #include "kernels/counts.h"
 #include "kernels/meet.h"
 #include "kernels/tables.h"
