@@ -2,8 +2,8 @@
 
 namespace vitral {
 
-void setup_frame(const Pinhole& camera, int width, int height, const Rectangle& crop, const Mesh& mesh,
-                 const ForEach& for_each, RasterFrame& frame) {
+void transform_vertices(const Pinhole& camera, int width, int height, const Rectangle& crop, const Mesh& mesh,
+                        const ForEach& for_each, RasterFrame& frame) {
   frame.projection = make_projection(camera, width, height, crop);
   frame.grid = make_grid(width, height);
 
@@ -15,15 +15,26 @@ void setup_frame(const Pinhole& camera, int width, int height, const Rectangle& 
     const size_t count = begin + per_piece < vertices ? per_piece : vertices - begin;
     project_vertices(frame.projection, mesh.positions.data() + begin, count, frame.vertices.data() + begin);
   });
+}
 
+void setup_triangles(const Mesh& mesh, const ForEach& for_each, RasterFrame& frame) {
   frame.chunks.resize(chunk_count(mesh.triangles.size()));
   for_each(frame.chunks.size(), [&](size_t chunk) {
     setup_chunk(frame.projection, frame.grid, mesh, frame.vertices.data(), chunk, frame.chunks[chunk]);
   });
+}
+
+void bin_triangles(const ForEach& for_each, RasterFrame& frame) {
   frame.chunk_triangles.clear();
   for (const SetupChunk& chunk : frame.chunks) frame.chunk_triangles.push_back(chunk.triangles.data());
-
   merge_bins(frame.grid, frame.chunks, for_each, frame.bins);
+}
+
+void setup_frame(const Pinhole& camera, int width, int height, const Rectangle& crop, const Mesh& mesh,
+                 const ForEach& for_each, RasterFrame& frame) {
+  transform_vertices(camera, width, height, crop, mesh, for_each, frame);
+  setup_triangles(mesh, for_each, frame);
+  bin_triangles(for_each, frame);
 }
 
 RasterView make_view(const RasterFrame& frame, const Pinhole& camera, const KdTriangle* triangles,

@@ -18,7 +18,13 @@ struct RasterFrame {
   Bins bins;
 };
 
-// Projects the vertices, sets up the triangles and bins them. Frames up to kMaxImageSide a side.
+// The three stages of setup_frame, in this order: the vertices on the screen, the triangles ready to be
+// filled, and which of them each tile has to look at. Frames up to kMaxImageSide a side.
+void transform_vertices(const Pinhole& camera, int width, int height, const Rectangle& crop, const Mesh& mesh,
+                        const ForEach& for_each, RasterFrame& frame);
+void setup_triangles(const Mesh& mesh, const ForEach& for_each, RasterFrame& frame);
+void bin_triangles(const ForEach& for_each, RasterFrame& frame);
+
 void setup_frame(const Pinhole& camera, int width, int height, const Rectangle& crop, const Mesh& mesh,
                  const ForEach& for_each, RasterFrame& frame);
 
