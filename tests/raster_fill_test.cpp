@@ -40,15 +40,21 @@ double plane_inverse_depth(const Mesh& mesh, uint32_t triangle, const Pinhole& c
          dot(n, a);
 }
 
-// Another order of the triangles within every bin.
-void shuffle_bins(Random& random, RasterFrame& frame) {
-  for (size_t bin = 0; bin + 1 < frame.bins.first_reference.size(); ++bin) {
-    const uint64_t first = frame.bins.first_reference[bin], end = frame.bins.first_reference[bin + 1];
+template <class Item>
+void shuffle_lists(Random& random, BinLists<Item>& lists) {
+  for (size_t bin = 0; bin + 1 < lists.first.size(); ++bin) {
+    const uint64_t first = lists.first[bin], end = lists.first[bin + 1];
     for (uint64_t i = first; i < end; ++i) {
       const uint64_t other = first + random.below(static_cast<uint32_t>(end - first));
-      std::swap(frame.bins.references[i], frame.bins.references[other]);
+      std::swap(lists.items[i], lists.items[other]);
     }
   }
+}
+
+// Another order of the triangles within every bin.
+void shuffle_bins(Random& random, RasterFrame& frame) {
+  shuffle_lists(random, frame.bins.references);
+  shuffle_lists(random, frame.bins.runs);
 }
 
 TEST(RasterFill, TheNearestTriangleWins) {
@@ -118,8 +124,8 @@ TEST(RasterFill, EqualDepthGoesToTheLowerNumberInAnyOrder) {
   }
   const Pinhole camera = pixel_camera();
   RasterFrame frame;
-  setup_frame(camera, size, size, {}, mesh, in_order, frame);
   const Kernels& kernels = *available_kernels().back();
+  setup_frame(kernels.setup_triangles, camera, size, size, {}, mesh, nullptr, in_order, frame);
   const Picture expected = fill_frame(kernels, camera, size, size, frame);
   size_t covered = 0;
   for (const uint32_t t : expected.triangle) {
@@ -153,7 +159,8 @@ TEST(RasterFill, CloseLayersInAnyOrder) {
     const uint32_t expected = static_cast<uint32_t>(std::find(depth.begin(), depth.end(), 0) - depth.begin());
     const Pinhole camera = pixel_camera();
     RasterFrame frame;
-    setup_frame(camera, size, size, {}, mesh, in_order, frame);
+    setup_frame(available_kernels().back()->setup_triangles, camera, size, size, {}, mesh, nullptr, in_order,
+                frame);
     for (int shuffle = 0; shuffle < 6; ++shuffle) {
       for (const Kernels* kernels : available_kernels()) {
         for (const uint32_t t : fill_frame(*kernels, camera, size, size, frame).triangle)
@@ -208,28 +215,37 @@ TEST(RasterFill, TheOrderOfTheWorkDoesNotMatter) {
     mesh.triangles.insert(mesh.triangles.end(), mesh.triangles.begin(), mesh.triangles.begin() + 500);
   }
   RasterFrame expected, backwards, threaded;
-  setup_frame(pixel_camera(), 200, 200, {}, mesh, in_order, expected);
-  setup_frame(
-      pixel_camera(), 200, 200, {}, mesh,
+  const auto set_up = [&](const ForEach& for_each, RasterFrame& frame) {
+    const SetupKernel kernel = available_kernels().back()->setup_triangles;
+    setup_frame(kernel, pixel_camera(), 200, 200, {}, mesh, nullptr, for_each, frame);
+  };
+  set_up(in_order, expected);
+  set_up(
       [](size_t count, const std::function<void(size_t)>& body) {
         while (count-- > 0) body(count);
       },
       backwards);
   ThreadPool pool(3);
-  setup_frame(
-      pixel_camera(), 200, 200, {}, mesh,
+  set_up(
       [&](size_t count, const std::function<void(size_t)>& body) {
         pool.parallel_for(count, [&](size_t i, size_t) { body(i); });
       },
       threaded);
-  EXPECT_GT(expected.bins.references.size(), 20000u);
+  EXPECT_GT(expected.bins.references.items.size(), 20000u);
+  EXPECT_GT(expected.bins.runs.items.size(), 50u);
   for (const RasterFrame* frame : {&backwards, &threaded}) {
-    EXPECT_EQ(frame->bins.first_reference, expected.bins.first_reference);
-    EXPECT_EQ(frame->bins.references, expected.bins.references);
+    EXPECT_EQ(frame->bins.references.first, expected.bins.references.first);
+    EXPECT_EQ(frame->bins.references.items, expected.bins.references.items);
+    EXPECT_EQ(frame->bins.runs.first, expected.bins.runs.first);
+    for (size_t i = 0; i < expected.bins.runs.items.size(); ++i) {
+      const FragmentRun &a = expected.bins.runs.items[i], &b = frame->bins.runs.items[i];
+      ASSERT_EQ(a.count, b.count);
+      for (uint32_t f = 0; f < a.count; ++f) ASSERT_EQ(a.first[f].triangle, b.first[f].triangle);
+    }
   }
-  EXPECT_TRUE(std::is_sorted(
-      expected.bins.references.begin(),
-      expected.bins.references.begin() + static_cast<std::ptrdiff_t>(expected.bins.first_reference[1])));
+  EXPECT_TRUE(std::is_sorted(expected.bins.references.items.begin(),
+                             expected.bins.references.items.begin() +
+                                 static_cast<std::ptrdiff_t>(expected.bins.references.first[1])));
 }
 
 TEST(RasterFill, WhatLiesBeyondFarOrBeforeNearIsNotSeen) {
@@ -326,9 +342,10 @@ TEST(RasterFill, MemoryOfTheBinsIsBounded) {
     add_triangle(mesh, at_pixel(-1, -1, depth), at_pixel(40000, -1, depth), at_pixel(-1, 40000, depth));
   }
   RasterFrame frame;
-  setup_frame(pixel_camera(), kMaxImageSide, kMaxImageSide, {}, mesh, in_order, frame);
-  EXPECT_GE(frame.bins.references.size(), 1000u);
-  EXPECT_LE(frame.bins.references.size(), 1000u * kMaxBinsTouched);
+  setup_frame(available_kernels().back()->setup_triangles, pixel_camera(), kMaxImageSide, kMaxImageSide, {},
+              mesh, nullptr, in_order, frame);
+  EXPECT_GE(frame.bins.references.items.size(), 1000u);
+  EXPECT_LE(frame.bins.references.items.size(), 1000u * kMaxBinsTouched);
   const Pinhole camera = pixel_camera();
   const RasterView view = make_view(frame, camera, nullptr, nullptr);
   const auto tile = std::make_unique<TileVisibility>();

@@ -240,6 +240,24 @@ void fill_bin(const RasterView& view, uint32_t bin, Tile& tile) {
   }
 }
 
+// The pixels of small triangles, which are found already.
+void fill_runs(const RasterView& view, uint32_t bin, TileVisibility& seen) {
+  for (uint64_t r = view.first_run[bin]; r < view.first_run[bin + 1]; ++r) {
+    const FragmentRun run = view.runs[r];
+    for (const Fragment* f = run.first; f != run.first + run.count; ++f) {
+      const uint32_t x = static_cast<uint32_t>(f->x_y) % kTileSide;
+      const uint32_t y = static_cast<uint32_t>(f->x_y >> 16) % kTileSide;
+      const uint32_t block = y / kBlockSide * kTileBlocksAcross + x / kBlockSide;
+      const uint32_t i = block * kPacketSize + y % kBlockSide * kBlockSide + x % kBlockSide;
+      float& depth = seen.inverse_depth[i];
+      uint32_t& number = seen.triangle[i];
+      const bool wins = (f->inverse_depth > depth) | ((f->inverse_depth == depth) & (f->triangle < number));
+      depth = wins ? f->inverse_depth : depth;
+      number = wins ? f->triangle : number;
+    }
+  }
+}
+
 }  // namespace
 
 void fill_tile(const RasterView& view, int tile_x, int tile_y, TileVisibility& out) {
@@ -259,6 +277,7 @@ void fill_tile(const RasterView& view, int tile_x, int tile_y, TileVisibility& o
         static_cast<uint32_t>((tile_y >> shift) * view.grid.across[level] + (tile_x >> shift));
     fill_bin(view, bin, tile);
   }
+  fill_runs(view, static_cast<uint32_t>(tile_y * view.grid.across[0] + tile_x), out);
   forget_unwanted(tile);
 }
 

@@ -35,6 +35,13 @@ static inline bool invert(bool a) {
   return !a;
 }
 
+static inline int32_t least(int32_t a, int32_t b) {
+  return a < b ? a : b;
+}
+static inline int32_t greatest(int32_t a, int32_t b) {
+  return a > b ? a : b;
+}
+
 static inline double widen(float x) {
   return static_cast<double>(x);
 }
@@ -68,6 +75,9 @@ static inline uint32_t as_bits(float x) {
   uint32_t bits;
   std::memcpy(&bits, &x, sizeof bits);
   return bits;
+}
+static inline int32_t as_int(float x) {
+  return static_cast<int32_t>(as_bits(x));
 }
 static inline float from_bits(uint32_t bits) {
   float x;

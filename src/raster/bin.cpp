@@ -30,43 +30,59 @@ void add_to_bins(const BinGrid& grid, const PixelBox& box, uint32_t place, std::
   }
 }
 
+namespace {
+
 // The chunks are counted and scattered in a few groups side by side: a group's entries of a bin come
 // after those of the groups before it, so the number of groups cannot be seen in the result.
-void merge_bins(const BinGrid& grid, const std::vector<SetupChunk>& chunks, const ForEach& for_each,
-                Bins& bins) {
+template <class Entry, class Item, class MakeItem>
+void sort_by_bin(uint32_t bins, const std::vector<SetupChunk>& chunks,
+                 std::vector<Entry> SetupChunk::*entries, const MakeItem& make_item, const ForEach& for_each,
+                 BinLists<Item>& lists) {
   constexpr size_t groups = 8;
   const size_t per_group = (chunks.size() + groups - 1) / groups;
   const auto for_each_entry = [&](size_t group, const auto& visit) {
     const size_t end = (group + 1) * per_group < chunks.size() ? (group + 1) * per_group : chunks.size();
     for (size_t c = group * per_group; c < end; ++c) {
-      for (const BinEntry& e : chunks[c].entries) visit(e, static_cast<uint32_t>(c));
+      for (const Entry& e : chunks[c].*entries) visit(e, static_cast<uint32_t>(c));
     }
   };
 
   std::vector<std::vector<uint64_t>> next(groups);  // per bin: how many, then where the next one goes
   for_each(groups, [&](size_t group) {
-    next[group].assign(grid.bins, 0);
-    for_each_entry(group, [&](const BinEntry& e, uint32_t) { ++next[group][e.bin]; });
+    next[group].assign(bins, 0);
+    for_each_entry(group, [&](const Entry& e, uint32_t) { ++next[group][e.bin]; });
   });
 
-  bins.first_reference.resize(grid.bins + size_t{1});
+  lists.first.resize(bins + size_t{1});
   uint64_t total = 0;
-  for (uint32_t bin = 0; bin < grid.bins; ++bin) {
-    bins.first_reference[bin] = total;
+  for (uint32_t bin = 0; bin < bins; ++bin) {
+    lists.first[bin] = total;
     for (std::vector<uint64_t>& n : next) {
       const uint64_t count = n[bin];
       n[bin] = total;
       total += count;
     }
   }
-  bins.first_reference[grid.bins] = total;
+  lists.first[bins] = total;
 
-  bins.references.resize(total);
+  lists.items.resize(total);
   for_each(groups, [&](size_t group) {
-    for_each_entry(group, [&](const BinEntry& e, uint32_t chunk) {
-      bins.references[next[group][e.bin]++] = chunk << kPlaceBits | e.place;
+    for_each_entry(group, [&](const Entry& e, uint32_t chunk) {
+      lists.items[next[group][e.bin]++] = make_item(e, chunk);
     });
   });
+}
+
+}  // namespace
+
+void merge_bins(const BinGrid& grid, const std::vector<SetupChunk>& chunks, const ForEach& for_each,
+                Bins& bins) {
+  const auto reference = [](const BinEntry& e, uint32_t chunk) { return chunk << kPlaceBits | e.place; };
+  const auto run = [&](const RunEntry& e, uint32_t chunk) {
+    return FragmentRun{chunks[chunk].fragments.data() + e.first, e.count};
+  };
+  sort_by_bin(grid.bins, chunks, &SetupChunk::entries, reference, for_each, bins.references);
+  sort_by_bin(grid.first_bin[1], chunks, &SetupChunk::runs, run, for_each, bins.runs);
 }
 
 }  // namespace vitral

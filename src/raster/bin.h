@@ -19,12 +19,20 @@ BinGrid make_grid(int width, int height);
 // Appends `place` to every bin that the box, which must not be empty, touches at the level it goes to.
 void add_to_bins(const BinGrid& grid, const PixelBox& box, uint32_t place, std::vector<BinEntry>& entries);
 
-struct Bins {
-  std::vector<uint64_t> first_reference;   // of every bin, and the end of the last
-  std::vector<SetupReference> references;  // in a bin: in the order of the mesh's triangles
+// A list for every bin, one after the other: bin b has [first[b], first[b + 1]) of the items.
+template <class Item>
+struct BinLists {
+  std::vector<uint64_t> first;
+  std::vector<Item> items;
 };
 
-// Sorts the entries of all chunks by bin (counting sort, stable). The result depends on nothing else.
+struct Bins {
+  BinLists<SetupReference> references;  // of all levels
+  BinLists<FragmentRun> runs;           // of the finest level
+};
+
+// Sorts the entries and the runs of all chunks by bin (counting sort, stable: in the order of the chunks).
+// The result depends on nothing else. The runs refer to the chunks' fragments.
 void merge_bins(const BinGrid& grid, const std::vector<SetupChunk>& chunks, const ForEach& for_each,
                 Bins& bins);
 

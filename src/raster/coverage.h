@@ -3,6 +3,7 @@
 //
 // Edge functions after Pineda, "A Parallel Algorithm for Polygon Rasterization", SIGGRAPH 1988.
 #pragma once
+#include "math/scalar.h"
 #include "raster/raster.h"
 
 #include <cstdint>
@@ -20,35 +21,39 @@ struct Edge {
   int32_t across, down;
 };
 
-// The edge from (px, py) to (qx, qy), seen from the centre of pixel (x, y). With y down and the inside
-// positive, a left edge runs up and a top edge runs to the right; the others give up their zeros.
+// With y down and the inside positive, a left edge runs up and a top edge runs to the right; the others
+// give up their zeros.
+template <class I>
+static inline auto is_left_or_top(const I& across, const I& down) {
+  const I zero = I(0);
+  return either(across > zero, both(across == zero, down > zero));
+}
+
+// The edge from (px, py) to (qx, qy), seen from the centre of pixel (x, y).
 static inline Edge make_edge(int32_t px, int32_t py, int32_t qx, int32_t qy, int x, int y) {
   const int32_t across = py - qy, down = qx - px;
-  const bool left_or_top = across > 0 || (across == 0 && down > 0);
+  const bool left_or_top = is_left_or_top(across, down);
   const int64_t dx = static_cast<int64_t>(x) * kSubpixels + kSubpixels / 2 - px;
   const int64_t dy = static_cast<int64_t>(y) * kSubpixels + kSubpixels / 2 - py;
   const int64_t exact = across * dx + down * dy;
   return {(exact - (left_or_top ? 0 : 1)) >> kSubpixelBits, across, down};
 }
 
-// Twice the area, positive when the edges 0-1, 1-2, 2-0 have the inside on their positive side.
-static inline int64_t doubled_area(const int32_t x[3], const int32_t y[3]) {
-  return static_cast<int64_t>(x[1] - x[0]) * (y[2] - y[0]) -
-         static_cast<int64_t>(y[1] - y[0]) * (x[2] - x[0]);
+// Twice the area, positive when the edges 0-1, 1-2, 2-0 have the inside on their positive side. W holds
+// the products.
+template <class W, class I>
+static inline W doubled_area(const I x[3], const I y[3]) {
+  return W(x[1] - x[0]) * W(y[2] - y[0]) - W(y[1] - y[0]) * W(x[2] - x[0]);
 }
 
 // The pixels whose centres lie in the bounding box of three snapped points.
-static inline PixelBox centers_within(const int32_t x[3], const int32_t y[3]) {
-  int32_t x0 = x[0], x1 = x[0], y0 = y[0], y1 = y[0];
-  for (int i = 1; i < 3; ++i) {
-    x0 = x[i] < x0 ? x[i] : x0;
-    x1 = x[i] > x1 ? x[i] : x1;
-    y0 = y[i] < y0 ? y[i] : y0;
-    y1 = y[i] > y1 ? y[i] : y1;
-  }
-  constexpr int half = kSubpixels / 2;
-  return {(x0 + (half - 1)) >> kSubpixelBits, (y0 + (half - 1)) >> kSubpixelBits,
-          ((x1 - half) >> kSubpixelBits) + 1, ((y1 - half) >> kSubpixelBits) + 1};
+template <class I>
+static inline PixelBoxT<I> centers_within(const I x[3], const I y[3]) {
+  const I x0 = least(least(x[0], x[1]), x[2]), x1 = greatest(greatest(x[0], x[1]), x[2]);
+  const I y0 = least(least(y[0], y[1]), y[2]), y1 = greatest(greatest(y[0], y[1]), y[2]);
+  const I half = I(kSubpixels / 2), one = I(1);
+  return {(x0 + (half - one)) >> kSubpixelBits, (y0 + (half - one)) >> kSubpixelBits,
+          ((x1 - half) >> kSubpixelBits) + one, ((y1 - half) >> kSubpixelBits) + one};
 }
 
 // Whether the triangle covers the pixel (x, y); its area must be positive.

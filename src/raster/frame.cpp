@@ -17,11 +17,17 @@ void transform_vertices(const Pinhole& camera, int width, int height, const Rect
   });
 }
 
-void setup_triangles(const Mesh& mesh, const ForEach& for_each, RasterFrame& frame) {
+void setup_triangles(SetupKernel kernel, const Mesh& mesh, const KdTriangle* flags_of,
+                     const ForEach& for_each, RasterFrame& frame) {
+  const SetupInput in{frame.projection,
+                      frame.vertices.data(),
+                      mesh.positions.data(),
+                      mesh.triangles.empty() ? nullptr : mesh.triangles.front().data(),
+                      static_cast<uint32_t>(mesh.triangles.size()),
+                      flags_of};
   frame.chunks.resize(chunk_count(mesh.triangles.size()));
-  for_each(frame.chunks.size(), [&](size_t chunk) {
-    setup_chunk(frame.projection, frame.grid, mesh, frame.vertices.data(), chunk, frame.chunks[chunk]);
-  });
+  for_each(frame.chunks.size(),
+           [&](size_t chunk) { setup_chunk(kernel, in, frame.grid, mesh, chunk, frame.chunks[chunk]); });
 }
 
 void bin_triangles(const ForEach& for_each, RasterFrame& frame) {
@@ -30,18 +36,20 @@ void bin_triangles(const ForEach& for_each, RasterFrame& frame) {
   merge_bins(frame.grid, frame.chunks, for_each, frame.bins);
 }
 
-void setup_frame(const Pinhole& camera, int width, int height, const Rectangle& crop, const Mesh& mesh,
-                 const ForEach& for_each, RasterFrame& frame) {
+void setup_frame(SetupKernel kernel, const Pinhole& camera, int width, int height, const Rectangle& crop,
+                 const Mesh& mesh, const KdTriangle* flags_of, const ForEach& for_each, RasterFrame& frame) {
   transform_vertices(camera, width, height, crop, mesh, for_each, frame);
-  setup_triangles(mesh, for_each, frame);
+  setup_triangles(kernel, mesh, flags_of, for_each, frame);
   bin_triangles(for_each, frame);
 }
 
 RasterView make_view(const RasterFrame& frame, const Pinhole& camera, const KdTriangle* triangles,
                      const CutOuts* cut_outs) {
   return {frame.chunk_triangles.data(),
-          frame.bins.references.data(),
-          frame.bins.first_reference.data(),
+          frame.bins.references.items.data(),
+          frame.bins.references.first.data(),
+          frame.bins.runs.items.data(),
+          frame.bins.runs.first.data(),
           frame.grid,
           frame.projection.window,
           frame.projection.least_inverse_depth,

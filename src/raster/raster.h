@@ -2,10 +2,11 @@
 // the surface is like at the pixel is computed once per visible pixel afterwards, from the camera
 // ray and the triangle, by the same formula as for traced rays (kernels/visible.h).
 //
-// How to read this folder: this file (what the stages hand to each other), setup.cpp (vertices to
-// pixels, triangles to edges and planes), clip.cpp, bin.cpp, coverage.h (the fill rule), and then
-// kernels/fill.cpp, which fills one tile. The stages are those of Laine and Karras, "High-Performance
-// Software Rasterization on GPUs", HPG 2011.
+// How to read this folder: this file (what the stages hand to each other), project.h (points to pixels,
+// triangles to planes), setup.cpp (which triangle goes which way), clip.cpp, bin.cpp, coverage.h (the
+// fill rule), then kernels/setup.cpp, where most triangles are set up and those of a few pixels are
+// done with, and kernels/fill.cpp, which fills one tile. The stages are those of Laine and Karras,
+// "High-Performance Software Rasterization on GPUs", HPG 2011.
 //
 // Screen coordinates: pixel (x, y) has its centre at (x + 0.5, y + 0.5), y down. Vertices are snapped
 // to 1/256 pixel; from there on coverage is integer arithmetic and exact. Depth is kept as its
@@ -13,6 +14,7 @@
 #pragma once
 #include "math/pinhole.h"
 #include "vitral/ray.h"
+#include "vitral/vec.h"
 
 #include <cstdint>
 
@@ -34,8 +36,30 @@ inline constexpr int kTileBlocksAcross = kTileSide / 8;
 inline constexpr int kTileBlocks = kTileBlocksAcross * kTileBlocksAcross;  // of 8x8 pixels, row by row
 
 // Pixels [x0, x1) x [y0, y1).
-struct PixelBox {
-  int x0, y0, x1, y1;
+template <class I>
+struct PixelBoxT {
+  I x0, y0, x1, y1;
+};
+using PixelBox = PixelBoxT<int32_t>;
+
+// From the world to homogeneous pixel coordinates: (X, Y, W) with X / W and Y / W in pixels and W the
+// depth. The rows are the inverse of primary_direction(), so that a point on the ray of a pixel's
+// centre is found at that centre.
+struct Projection {
+  Vec3d origin;
+  Vec3d row_x, row_y, row_w;
+  double near;                // > 0
+  float least_inverse_depth;  // 1 / far
+  PixelBox window;            // the crop within the frame
+};
+
+// A vertex on the screen, if it lies within the clip volume. The finer place is for the depth of small
+// triangles: coverage only knows snapped() ones.
+inline constexpr int kFineBits = 14;
+struct ScreenVertex {
+  int32_t x, y;         // 2^-kFineBits pixel, rounded down
+  float inverse_depth;  // 1 / W
+  uint32_t outside;     // of which clip planes; when not 0, the other members mean nothing
 };
 
 // A triangle ready to be filled: of non-zero area, its corners in the order that makes the inside
@@ -48,6 +72,41 @@ struct alignas(64) SetupTriangle {
   double across, down, at_0;  // inverse depth = across * x + down * y + at_0
 };
 static_assert(sizeof(SetupTriangle) == 64);
+
+// A triangle whose bounding box holds no more than kSmallSide x kSmallSide pixel centres is not set up for
+// filling: the pixels it covers are found at once, for a register of triangles at a time.
+inline constexpr int kSmallSide = 4;
+struct Fragment {
+  int32_t x_y;  // pixel: x in the lower half, y in the upper one
+  float inverse_depth;
+  uint32_t triangle;  // number in Mesh::triangles
+};
+
+// What kernels/setup.cpp reads.
+struct SetupInput {
+  Projection projection;
+  const ScreenVertex* vertices;
+  const Vec3* positions;
+  const uint32_t* corners;  // into both, three per triangle
+  uint32_t triangle_count;
+  const KdTriangle* flags_of;  // by triangle number; null where no triangle is a cut-out
+};
+
+// Triangles are set up in chunks of this many.
+inline constexpr uint32_t kChunkTriangles = 4096;
+
+// What kernels/setup.cpp makes of a chunk. The arrays end in what a register may overwrite.
+struct SetupOutput {
+  static constexpr uint32_t kMostFragments = kChunkTriangles * kSmallSide * kSmallSide;
+  uint32_t other_count, triangle_count, fragment_count;
+  uint32_t others[kChunkTriangles + 16];  // numbers: to be clipped, or too large for 32-bit areas
+  SetupTriangle triangles[kChunkTriangles];
+  int32_t x_y[kMostFragments + 16];  // of the fragments, component by component
+  float inverse_depth[kMostFragments + 16];
+  uint32_t triangle[kMostFragments + 16];
+};
+// Sets up the triangles [begin, end), no more than kChunkTriangles.
+using SetupKernel = void (*)(const SetupInput& in, uint32_t begin, uint32_t end, SetupOutput& out);
 
 // Bins are squares of 32, 128, 512, 2048 and 8192 pixels: a triangle goes to the bins of the finest
 // level of which it touches no more than kMaxBinsTouched, so that the memory is bounded whatever the
@@ -65,11 +124,19 @@ struct BinGrid {
 using SetupReference = uint32_t;
 inline constexpr int kPlaceBits = 15;
 
+// Fragments of one tile that follow each other.
+struct FragmentRun {
+  const Fragment* first;
+  uint32_t count;
+};
+
 // The binned frame as the fill kernel sees it: pointers only.
 struct RasterView {
   const SetupTriangle* const* chunks;
   const SetupReference* references;
   const uint64_t* first_reference;  // of bin b: [first_reference[b], first_reference[b + 1])
+  const FragmentRun* runs;
+  const uint64_t* first_run;  // of bin b of the finest level, likewise
   BinGrid grid;
   PixelBox window;            // the pixels wanted; the others of a tile come out empty
   float least_inverse_depth;  // 1 / far: what lies beyond is not seen

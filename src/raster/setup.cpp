@@ -1,41 +1,21 @@
-// Triangle setup: project, clip, snap, cull, and find edges' corners and the plane of inverse depth.
+// Triangle setup: project, clip, snap, cull, and find edges' corners and the plane of inverse depth. All
+// but the triangles that are clipped or very large are left to the kernel.
 #include "raster/setup.h"
 
 #include "raster/bin.h"
 #include "raster/coverage.h"
+#include "raster/project.h"
+
+#include <algorithm>
+#include <bit>
+#include <memory>
 
 namespace vitral {
 namespace {
 
-ClipVertex project(const Projection& p, const Vec3& position) {
-  const Vec3d d = to_double(position) - p.origin;
-  return {dot(p.row_x, d), dot(p.row_y, d), dot(p.row_w, d)};
-}
-
-// To the nearest 1/256 pixel, halves up. Clipped vertices may overshoot the guard band by a rounding.
-int32_t snap(double pixels) {
-  constexpr double limit = kGuardBand + 1;
-  const double inside = pixels < -limit ? -limit : pixels > limit ? limit : pixels;
-  constexpr int32_t shift = (kGuardBand + 2) * kSubpixels;  // makes it positive: the cast rounds down
-  return static_cast<int32_t>(inside * kSubpixels + (shift + 0.5)) - shift;
-}
-
-// The inverse depth over the screen of the plane through three points, seen or not: with
-// (a, b, c) . (X, Y, W) = 1 at the corners, 1 / W = a X / W + b Y / W + c (Olano and Greer, "Triangle
-// Scan Conversion using 2D Homogeneous Coordinates", 1997).
-// A triangle seen exactly from the side has no such plane: it is given its least inverse depth.
-void set_plane(const ClipVertex v[3], SetupTriangle& t) {
-  const Vec3d a{v[0].x, v[0].y, v[0].w}, b{v[1].x, v[1].y, v[1].w}, c{v[2].x, v[2].y, v[2].w};
-  const Vec3d n = cross(b - a, c - a);
-  const double det = dot(a, n);
-  t.across = n.x / det;
-  t.down = n.y / det;
-  t.at_0 = n.z / det;
-  // Within these bounds the fill's sums are finite in float; NaN fails the test, too.
-  constexpr double steepest = 1e30, farthest = 1e36;
-  const bool usable = t.across >= -steepest && t.across <= steepest && t.down >= -steepest &&
-                      t.down <= steepest && t.at_0 >= -farthest && t.at_0 <= farthest;
-  if (!usable) t.across = t.down = 0, t.at_0 = static_cast<double>(t.least);
+ClipVertex clip_vertex(const Projection& p, const Vec3& position) {
+  const Vec3d v = project(p, to_double(position));
+  return {v.x, v.y, v.z};
 }
 
 struct SnappedPolygon {
@@ -53,18 +33,18 @@ void add_corner(int32_t x, int32_t y, float inverse_depth, SnappedPolygon& p) {
 }
 
 SnappedPolygon clip_and_snap(const Projection& projection, const ClipVertex triangle[3]) {
-  SnappedPolygon snapped{};
+  SnappedPolygon result{};
   const ClipPolygon clipped = clip_triangle(triangle, projection.near);
-  if (clipped.corners < 3) return snapped;
+  if (clipped.corners < 3) return result;
   for (int i = 0; i < clipped.corners; ++i) {
     const ClipVertex& v = clipped.corner[i];
     const double inverse_w = 1 / v.w;
     const double x = v.x * inverse_w, y = v.y * inverse_w;
     const bool finite = x - x == 0 && y - y == 0 && inverse_w - inverse_w == 0;
     if (!finite) return SnappedPolygon{};
-    add_corner(snap(x), snap(y), narrow(inverse_w), snapped);
+    add_corner(snapped(fine_place(x)), snapped(fine_place(y)), narrow(inverse_w), result);
   }
-  return snapped;
+  return result;
 }
 
 // Polygon to triangles around its first corner. All have the plane of the whole.
@@ -78,7 +58,7 @@ void emit(const Projection& projection, const BinGrid& grid, const Mesh& mesh, u
     for (int k = 0; k < 3; ++k) t.x[k] = polygon.x[order[k]], t.y[k] = polygon.y[order[k]];
     const PixelBox box = intersection(centers_within(t.x, t.y), projection.window);
     if (is_empty(box)) continue;
-    const int64_t area = doubled_area(t.x, t.y);
+    const int64_t area = doubled_area<int64_t>(t.x, t.y);
     if (area == 0) continue;
     if (area < 0) {
       const int32_t x = t.x[1], y = t.y[1];
@@ -89,13 +69,15 @@ void emit(const Projection& projection, const BinGrid& grid, const Mesh& mesh, u
     const bool one_pixel = box.x1 - box.x0 == 1 && box.y1 - box.y0 == 1;
     if (one_pixel && !covers(t.x, t.y, box.x0, box.y0)) continue;
     if (!has_plane) {
-      ClipVertex corner[3];
       const Corners& c = mesh.triangles[number];
-      for (size_t k = 0; k < 3; ++k) corner[k] = project(projection, mesh.positions[c[k]]);
+      Vec3d corner[3];
+      for (size_t k = 0; k < 3; ++k) corner[k] = project(projection, to_double(mesh.positions[c[k]]));
+      const InverseDepth<double> plane =
+          inverse_depth_plane(corner[0], corner[1], corner[2], widen(polygon.least));
       t.triangle = number;
       t.least = polygon.least;
       t.greatest = polygon.greatest;
-      set_plane(corner, t);
+      t.across = plane.across, t.down = plane.down, t.at_0 = plane.at_0;
       has_plane = true;
     }
     add_to_bins(grid, box, static_cast<uint32_t>(out.triangles.size()), out.entries);
@@ -134,38 +116,90 @@ Projection make_projection(const Pinhole& camera, int width, int height, const R
 
 void project_vertices(const Projection& projection, const Vec3* positions, size_t count, ScreenVertex* out) {
   for (size_t i = 0; i < count; ++i) {
-    const ClipVertex v = project(projection, positions[i]);
+    const ClipVertex v = clip_vertex(projection, positions[i]);
     const uint32_t outside = outside_planes(v, projection.near);
     if (outside != 0) {
       out[i] = {0, 0, 0, outside};
       continue;
     }
     const double inverse_w = 1 / v.w;
-    out[i] = {snap(v.x * inverse_w), snap(v.y * inverse_w), narrow(inverse_w), 0};
+    out[i] = {fine_place(v.x * inverse_w), fine_place(v.y * inverse_w), narrow(inverse_w), 0};
   }
 }
 
-void setup_chunk(const Projection& projection, const BinGrid& grid, const Mesh& mesh,
-                 const ScreenVertex* vertices, size_t chunk, SetupChunk& out) {
-  out.triangles.clear();
-  out.entries.clear();
-  const size_t begin = chunk * kChunkTriangles;
-  const size_t end =
-      begin + kChunkTriangles < mesh.triangles.size() ? begin + kChunkTriangles : mesh.triangles.size();
-  for (size_t number = begin; number < end; ++number) {
-    const Corners& c = mesh.triangles[number];
-    const ScreenVertex &v0 = vertices[c[0]], &v1 = vertices[c[1]], &v2 = vertices[c[2]];
-    if ((v0.outside & v1.outside & v2.outside) != 0) continue;
-    SnappedPolygon polygon{};
-    if ((v0.outside | v1.outside | v2.outside) == 0) {
-      for (const ScreenVertex* v : {&v0, &v1, &v2}) add_corner(v->x, v->y, v->inverse_depth, polygon);
-    } else {
-      ClipVertex corner[3];
-      for (size_t k = 0; k < 3; ++k) corner[k] = project(projection, mesh.positions[c[k]]);
-      polygon = clip_and_snap(projection, corner);
-    }
-    emit(projection, grid, mesh, static_cast<uint32_t>(number), polygon, out);
+namespace {
+
+// A triangle that the kernel left to us.
+void setup_other(const SetupInput& in, const BinGrid& grid, const Mesh& mesh, uint32_t number,
+                 SetupChunk& out) {
+  const Corners& c = mesh.triangles[number];
+  const ScreenVertex &v0 = in.vertices[c[0]], &v1 = in.vertices[c[1]], &v2 = in.vertices[c[2]];
+  SnappedPolygon polygon{};
+  if ((v0.outside | v1.outside | v2.outside) == 0) {
+    for (const ScreenVertex* v : {&v0, &v1, &v2})
+      add_corner(snapped(v->x), snapped(v->y), v->inverse_depth, polygon);
+  } else {
+    ClipVertex corner[3];
+    for (size_t k = 0; k < 3; ++k) corner[k] = clip_vertex(in.projection, mesh.positions[c[k]]);
+    polygon = clip_and_snap(in.projection, corner);
   }
+  emit(in.projection, grid, mesh, number, polygon, out);
+}
+
+void take_triangles(const SetupInput& in, const BinGrid& grid, const SetupOutput& output, SetupChunk& out) {
+  out.triangles.assign(output.triangles, output.triangles + output.triangle_count);
+  for (uint32_t place = 0; place < output.triangle_count; ++place) {
+    const SetupTriangle& t = out.triangles[place];
+    add_to_bins(grid, intersection(centers_within(t.x, t.y), in.projection.window), place, out.entries);
+  }
+}
+
+// Sorts the fragments by tile (counting sort over the tiles that the chunk's fragments lie in).
+void take_fragments(const BinGrid& grid, const SetupOutput& output, SetupChunk& out) {
+  const uint32_t n = output.fragment_count;
+  out.fragments.resize(n);
+  if (n == 0) return;
+  constexpr int32_t shift = std::countr_zero(static_cast<uint32_t>(kTileSide));
+  const auto column = [&](uint32_t i) { return (output.x_y[i] & 0xffff) >> shift; };
+  const auto row = [&](uint32_t i) { return output.x_y[i] >> (16 + shift); };
+  PixelBox tiles{column(0), row(0), column(0), row(0)};
+  for (uint32_t i = 1; i < n; ++i) {
+    tiles.x0 = least(tiles.x0, column(i)), tiles.x1 = greatest(tiles.x1, column(i));
+    tiles.y0 = least(tiles.y0, row(i)), tiles.y1 = greatest(tiles.y1, row(i));
+  }
+  const int32_t across = tiles.x1 - tiles.x0 + 1;
+  const auto tile = [&](uint32_t i) {
+    return static_cast<size_t>((row(i) - tiles.y0) * across + column(i) - tiles.x0);
+  };
+
+  std::vector<uint32_t> next(static_cast<size_t>(across * (tiles.y1 - tiles.y0 + 1)), 0);
+  for (uint32_t i = 0; i < n; ++i) ++next[tile(i)];
+  uint32_t first = 0;
+  for (size_t t = 0; t < next.size(); ++t) {
+    const uint32_t count = next[t];
+    next[t] = first;
+    if (count == 0) continue;
+    const int x = tiles.x0 + static_cast<int>(t) % across, y = tiles.y0 + static_cast<int>(t) / across;
+    out.runs.push_back({static_cast<uint32_t>(y * grid.across[0] + x), first, count});
+    first += count;
+  }
+  for (uint32_t i = 0; i < n; ++i)
+    out.fragments[next[tile(i)]++] = {output.x_y[i], output.inverse_depth[i], output.triangle[i]};
+}
+
+}  // namespace
+
+void setup_chunk(SetupKernel kernel, const SetupInput& in, const BinGrid& grid, const Mesh& mesh,
+                 size_t chunk, SetupChunk& out) {
+  const auto output = std::make_unique_for_overwrite<SetupOutput>();
+  const size_t begin = chunk * kChunkTriangles,
+               end = std::min(begin + kChunkTriangles, mesh.triangles.size());
+  kernel(in, static_cast<uint32_t>(begin), static_cast<uint32_t>(end), *output);
+  out.entries.clear();
+  out.runs.clear();
+  take_triangles(in, grid, *output, out);
+  take_fragments(grid, *output, out);
+  for (uint32_t i = 0; i < output->other_count; ++i) setup_other(in, grid, mesh, output->others[i], out);
 }
 
 }  // namespace vitral

@@ -47,6 +47,8 @@ void gather_triangles(const Scene& scene, ThreadPool& pool, Accelerator& acceler
     flags[m] = (is_glass(scene.materials[m]) ? kGlassTriangle : 0u) |
                (scene.materials[m].opacity_map != kNoTexture ? kCutOutTriangle : 0u);
   }
+  accelerator.has_cut_outs =
+      std::any_of(flags.begin(), flags.end(), [](uint32_t f) { return (f & kCutOutTriangle) != 0; });
   triangles.resize(mesh.triangles.size());
   constexpr size_t kChunk = 16384;
   pool.parallel_for((triangles.size() + kChunk - 1) / kChunk, [&](size_t chunk, size_t) {

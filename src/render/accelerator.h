@@ -16,7 +16,7 @@ struct Accelerator {
   KdTree all;    // every triangle
   KdTree glass;  // only those of glass, for the tint of shadows; empty without glass
   KdView view, glass_view;
-  bool has_glass = false;
+  bool has_glass = false, has_cut_outs = false;
 
   Accelerator() = default;
   Accelerator(const Accelerator&) = delete;

@@ -15,10 +15,11 @@ RasterView setup_raster(const FrameContext& frame, const Rectangle& crop, Thread
       body(i);
     });
   };
-  setup_frame(frame.camera, frame.settings.width, frame.settings.height, crop, frame.scene.mesh, for_each,
-              raster);
-  return make_view(raster, frame.camera, frame.accelerator.triangles.data(),
-                   &frame.accelerator.view.cut_outs);
+  const KdTriangle* triangles = frame.accelerator.triangles.data();
+  const bool holes = frame.accelerator.has_cut_outs;
+  setup_frame(frame.kernels.setup_triangles, frame.camera, frame.settings.width, frame.settings.height, crop,
+              frame.scene.mesh, holes ? triangles : nullptr, for_each, raster);
+  return make_view(raster, frame.camera, triangles, holes ? &frame.accelerator.view.cut_outs : nullptr);
 }
 
 namespace {

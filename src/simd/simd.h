@@ -63,6 +63,9 @@ static inline void compress(float* p, Float v, Mask m) {
 static inline void compress(uint32_t* p, Uint v, Mask m) {
   if (m) *p = v;
 }
+static inline void compress(int32_t* p, Int v, Mask m) {
+  if (m) *p = v;
+}
 static inline float least_lane(Float v) {
   return v;
 }
@@ -77,6 +80,10 @@ static inline Mask mask_of_bits(uint64_t b) {
 }
 static inline Uint lane_numbers() {
   return 0;
+}
+template <class Address>
+static inline void load_records(const Address& address, Float out[4]) {
+  std::memcpy(out, address(0), 4 * sizeof(float));
 }
 
 #else
@@ -330,6 +337,12 @@ static inline Float greatest(Float a, Float b) {
   return FloatVector(_mm_max_ps(__m128(a.v), __m128(b.v)));
 #endif
 }
+static inline Int least(Int a, Int b) {
+  return select(a < b, a, b);
+}
+static inline Int greatest(Int a, Int b) {
+  return select(a > b, a, b);
+}
 static inline Float square_root(Float a) {
 #if LANES == 16
   return FloatVector(_mm512_maskz_sqrt_ps(0xffff, __m512(a.v)));
@@ -355,11 +368,18 @@ static inline Double square_root(const Double& a) {
 static inline Uint as_bits(Float a) {
   return UintVector(a.v);
 }
+static inline Int as_int(Float a) {
+  return IntVector(a.v);
+}
 static inline Float from_bits(Uint a) {
   return FloatVector(a.v);
 }
 static inline Float absolute(Float a) {
   return from_bits(as_bits(a) & Uint(0x7fffffffu));
+}
+static inline Double absolute(const Double& a) {
+  const LongVector magnitude = LongVector{} + 0x7fffffffffffffff;
+  return {DoubleVector(LongVector(a.lo) & magnitude), DoubleVector(LongVector(a.hi) & magnitude)};
 }
 static inline Float copy_sign(Float magnitude, Float sign) {
   return from_bits((as_bits(magnitude) & Uint(0x7fffffffu)) | (as_bits(sign) & Uint(0x80000000u)));
@@ -413,12 +433,55 @@ static inline void store(uint32_t* p, Uint a) {
   std::memcpy(p, &a.v, sizeof a.v);
 }
 
+// Records of four numbers, one for each lane at address(lane), to four registers of their components.
+template <class Address>
+static inline void load_records(const Address& address, Float out[4]) {
+#if LANES == 16
+  __m512 row[4];
+  for (int i = 0; i < 4; ++i) {
+    const auto record = [&](int lane) { return _mm_loadu_ps(address(lane)); };
+    row[i] = _mm512_zextps128_ps512(record(i));
+    row[i] = _mm512_maskz_insertf32x4(0xffff, row[i], record(i + 4), 1);
+    row[i] = _mm512_maskz_insertf32x4(0xffff, row[i], record(i + 8), 2);
+    row[i] = _mm512_maskz_insertf32x4(0xffff, row[i], record(i + 12), 3);
+  }
+  const __m512 a = _mm512_maskz_unpacklo_ps(0xffff, row[0], row[1]);
+  const __m512 b = _mm512_maskz_unpackhi_ps(0xffff, row[0], row[1]);
+  const __m512 c = _mm512_maskz_unpacklo_ps(0xffff, row[2], row[3]);
+  const __m512 d = _mm512_maskz_unpackhi_ps(0xffff, row[2], row[3]);
+  out[0] = FloatVector(_mm512_maskz_shuffle_ps(0xffff, a, c, 0x44));
+  out[1] = FloatVector(_mm512_maskz_shuffle_ps(0xffff, a, c, 0xee));
+  out[2] = FloatVector(_mm512_maskz_shuffle_ps(0xffff, b, d, 0x44));
+  out[3] = FloatVector(_mm512_maskz_shuffle_ps(0xffff, b, d, 0xee));
+#elif LANES == 8
+  __m256 row[4];
+  for (int i = 0; i < 4; ++i) {
+    row[i] = _mm256_insertf128_ps(_mm256_zextps128_ps256(_mm_loadu_ps(address(i))),
+                                  _mm_loadu_ps(address(i + 4)), 1);
+  }
+  const __m256 a = _mm256_unpacklo_ps(row[0], row[1]), b = _mm256_unpackhi_ps(row[0], row[1]);
+  const __m256 c = _mm256_unpacklo_ps(row[2], row[3]), d = _mm256_unpackhi_ps(row[2], row[3]);
+  out[0] = FloatVector(_mm256_shuffle_ps(a, c, 0x44));
+  out[1] = FloatVector(_mm256_shuffle_ps(a, c, 0xee));
+  out[2] = FloatVector(_mm256_shuffle_ps(b, d, 0x44));
+  out[3] = FloatVector(_mm256_shuffle_ps(b, d, 0xee));
+#else
+  __m128 row[4];
+  for (int i = 0; i < 4; ++i) row[i] = _mm_loadu_ps(address(i));
+  _MM_TRANSPOSE4_PS(row[0], row[1], row[2], row[3]);
+  for (int i = 0; i < 4; ++i) out[i] = FloatVector(row[i]);
+#endif
+}
+
 // Stores the lanes of the mask side by side from p on; up to LANES numbers there may be overwritten.
 #if LANES == 16
 static inline void compress(float* p, Float v, Mask m) {
   _mm512_storeu_ps(p, _mm512_maskz_compress_ps(m.v, __m512(v.v)));
 }
 static inline void compress(uint32_t* p, Uint v, Mask m) {
+  _mm512_storeu_si512(p, _mm512_maskz_compress_epi32(m.v, __m512i(v.v)));
+}
+static inline void compress(int32_t* p, Int v, Mask m) {
   _mm512_storeu_si512(p, _mm512_maskz_compress_epi32(m.v, __m512i(v.v)));
 }
 #else
@@ -432,6 +495,9 @@ static inline void compress(float* p, Float v, Mask m) {
   compress_lanes(p, v, m);
 }
 static inline void compress(uint32_t* p, Uint v, Mask m) {
+  compress_lanes(p, v, m);
+}
+static inline void compress(int32_t* p, Int v, Mask m) {
   compress_lanes(p, v, m);
 }
 #endif
