@@ -1,18 +1,19 @@
 // Fills one tile: for every pixel the nearest triangle that covers its centre.
 //
-// A triangle meets the tile in blocks of 8x8 pixels. The edge functions at a block's corners tell
-// whether it lies outside an edge (nothing to do), inside (the edge is done with) or across it; only
-// then pixels are asked, a register of them at a time, in exact 32-bit integers. The inverse depth
-// is evaluated at each pixel's centre from the plane as seen from the block's corner, and the greater
-// wins; of equal ones the lower triangle number wins. So neither the order of the triangles nor the
-// shape of the tiles can be seen in the result.
+// A triangle meets the tile in cells of 4x4 pixels. The edge functions at the corners of 16 cells at a time
+// tell which of them lie outside an edge (nothing to do), inside all (no pixel has to be asked), or across
+// one; there the pixels are asked, in exact 32-bit integers. The inverse depth is evaluated at each pixel's
+// centre from the plane as seen from the cell's corner, and the greater wins; of equal ones the lower
+// triangle number wins. So neither the order of the triangles nor the shape of the tiles can be seen in the
+// result.
 //
-// A block that is covered whole remembers its least inverse depth: what lies behind that is skipped
-// (Greene, Kass and Miller, "Hierarchical Z-Buffer Visibility", SIGGRAPH 1993).
+// A cell that is covered whole remembers its least inverse depth, and the tile the least of all cells: what
+// lies behind that is skipped (Greene, Kass and Miller, "Hierarchical Z-Buffer Visibility", SIGGRAPH 1993).
 #include "kdtree/kdtree.h"
 #include "kernels/tables.h"
 #include "kernels/visible.h"
 #include "raster/coverage.h"
+#include "raster/project.h"
 #include "raster/raster.h"
 #include "simd/simd.h"
 
@@ -20,206 +21,249 @@ namespace vitral {
 namespace VITRAL_ISA {
 namespace {
 
-// Pixel of a lane within the group that starts a row.
-alignas(64) constexpr int32_t kLaneX[16] = {0, 1, 2, 3, 4, 5, 6, 7, 0, 1, 2, 3, 4, 5, 6, 7};
-alignas(64) constexpr int32_t kLaneY[16] = {0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1};
+constexpr int kCellSide = 4;
+constexpr int kCellPixels = kCellSide * kCellSide;
+constexpr int kCellsAcross = kTileSide / kCellSide;
+constexpr int kCells = kCellsAcross * kCellsAcross;
+constexpr int kGroups =
+    kCellPixels / kLanes;  // registers for the pixels of a cell, or for the cells of a window
+constexpr uint32_t kWholeCell = (1u << kCellPixels) - 1;
 
+// Place of a pixel in a cell, and of a cell in a window of 4x4 cells.
+alignas(64) constexpr int32_t kLaneX[16] = {0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3};
+alignas(64) constexpr int32_t kLaneY[16] = {0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3};
+
+// Cells row by row, and the pixels in each. A pixel without a triangle has the least inverse depth that is
+// seen, so that what lies beyond far loses against nothing; one that is not wanted has an infinite one.
 struct Tile {
-  TileVisibility* seen;
-  int x, y;                       // pixel at its corner
-  PixelBox window;                // pixels of the tile that are wanted, relative to the corner
-  uint64_t covered[kTileBlocks];  // pixels with a triangle, or not wanted
-  float least[kTileBlocks];       // of the inverse depths, once all pixels are covered; 0 before
-  float least_of_all;
+  alignas(64) float inverse_depth[kCells * kCellPixels];
+  alignas(64) uint32_t triangle[kCells * kCellPixels];
+  alignas(64) float least[kCells];  // of the inverse depths, once all pixels are covered; 0 before
+  uint32_t covered[kCells];         // pixels with a triangle, or not wanted
+  float least_of_all;               // no more than any of `least`
+  bool least_of_all_is_old;
+  int x, y;         // pixel at its corner
+  PixelBox window;  // pixels of the tile that are wanted, relative to the corner
 };
 
-// A triangle's edges seen from a pixel; `lanes` holds their growth over the lanes of a register.
-struct Edges {
-  Edge edge[3];
-  Int lanes[3];
+// A triangle in the tile: how its edge functions and its inverse depth grow over the pixels of a cell.
+struct Filling {
+  const SetupTriangle* triangle;
+  const CutOuts* cut_outs;  // null for a triangle without holes
+  int32_t least_growth[3], greatest_growth[3];
+  Int edge[3][kGroups];
+  Float across[kGroups], down[kGroups];
+  float greatest_across, greatest_down;
 };
 
-// The inverse depth at the centres of a block: at_corner + across * x + down * y, within the range
-// of the triangle. Every pixel's sum is rounded in the same order, so that it is the same number
-// whatever the registers' width, and monotone in x and y.
-struct DepthPlane {
-  float across, down, at_corner, least, greatest;
+// Edge values and inverse depths at the corners of 16 cells. Edge values are cut off at 2^30: within a
+// window they grow by less than 15 * 2 * (2^25 + 2^9) < 2^30, so that no sign changes and no sum overflows.
+struct Window {
+  alignas(64) int32_t edge[3][16];
+  alignas(64) float at_corner[16], greatest[16];
 };
 
-inline float within(const DepthPlane& p, float depth) {
-  const float raised = depth > p.least ? depth : p.least;
-  return raised < p.greatest ? raised : p.greatest;
-}
-
-inline DepthPlane depth_plane(const SetupTriangle& t, int x, int y) {
-  const double at_corner = (t.at_0 + t.across * (x + 0.5)) + t.down * (y + 0.5);
-  return {vitral::narrow(t.across), vitral::narrow(t.down), vitral::narrow(at_corner), t.least, t.greatest};
-}
-
-inline float greatest_in_block(const DepthPlane& p) {
-  const float x = p.across > 0 ? 7.0f : 0.0f, y = p.down > 0 ? 7.0f : 0.0f;
-  return within(p, (p.at_corner + p.across * x) + p.down * y);
-}
-
-// Least and greatest growth of an edge function within a square of pixels.
-inline int64_t least_growth(const Edge& e, int side) {
-  return static_cast<int64_t>(e.across < 0 ? e.across : 0) * (side - 1) +
-         static_cast<int64_t>(e.down < 0 ? e.down : 0) * (side - 1);
-}
-inline int64_t greatest_growth(const Edge& e, int side) {
-  return static_cast<int64_t>(e.across > 0 ? e.across : 0) * (side - 1) +
-         static_cast<int64_t>(e.down > 0 ? e.down : 0) * (side - 1);
-}
-
-// The edges that cross a block, as 32-bit values at its corner. Such a value cannot exceed the growth
-// within the block, 7 * (|across| + |down|) < 2^29, so all sums stay below 2^30.
-struct Crossing {
-  int32_t value[3], across[3], down[3];
-  Int lanes[3];
-  int count;
-};
-
-// False when the block is outside.
-inline bool find_crossing(const Edges& edges, int x, int y, Crossing& crossing) {
-  crossing.count = 0;
+Filling make_filling(const RasterView& view, const SetupTriangle& t) {
+  Filling f;
+  f.triangle = &t;
+  const bool is_cut_out =
+      view.cut_outs != nullptr && (view.triangles[t.triangle].flags & kCutOutTriangle) != 0;
+  f.cut_outs = is_cut_out ? view.cut_outs : nullptr;
+  constexpr int32_t far_side = kCellSide - 1;
   for (int k = 0; k < 3; ++k) {
-    const Edge& e = edges.edge[k];
-    const int64_t value = e.value + static_cast<int64_t>(e.across) * x + static_cast<int64_t>(e.down) * y;
-    if (value + greatest_growth(e, kBlockSide) < 0) return false;
-    if (value + least_growth(e, kBlockSide) >= 0) continue;
-    const int n = crossing.count++;
-    crossing.value[n] = static_cast<int32_t>(value);
-    crossing.across[n] = e.across;
-    crossing.down[n] = e.down;
-    crossing.lanes[n] = edges.lanes[k];
+    const int next = k == 2 ? 0 : k + 1;
+    const int32_t across = t.y[k] - t.y[next], down = t.x[next] - t.x[k];
+    f.least_growth[k] = far_side * (vitral::least(across, 0) + vitral::least(down, 0));
+    f.greatest_growth[k] = far_side * (vitral::greatest(across, 0) + vitral::greatest(down, 0));
+    for (int g = 0; g < kGroups; ++g)
+      f.edge[k][g] = load(kLaneX + g * kLanes) * Int(across) + load(kLaneY + g * kLanes) * Int(down);
   }
-  return true;
+  const float across = vitral::narrow(t.across), down = vitral::narrow(t.down);
+  for (int g = 0; g < kGroups; ++g) {
+    f.across[g] = to_float(load(kLaneX + g * kLanes)) * Float(across);
+    f.down[g] = to_float(load(kLaneY + g * kLanes)) * Float(down);
+  }
+  f.greatest_across = across > 0 ? across * far_side : 0.0f;
+  f.greatest_down = down > 0 ? down * far_side : 0.0f;
+  return f;
 }
 
-// Clears the pixels where a cut-out triangle is not there; the group's first pixel is (x, y).
-uint32_t keep_there(const RasterView& view, const CutOuts& cut_outs, uint32_t number, int x, int y,
-                    uint32_t pixels) {
+// The sums of every pixel are rounded in the same order, so that they are monotone in x and y: what holds
+// for the corner where both are greatest holds for all.
+template <class F>
+inline F sum_within(const SetupTriangle& t, const F& at_corner, const F& across, const F& down) {
+  return least(greatest((at_corner + across) + down, F(t.least)), F(t.greatest));
+}
+
+inline int32_t cut_off(int64_t value) {
+  constexpr int64_t limit = 1 << 30;
+  return static_cast<int32_t>(value < -limit ? -limit : value > limit ? limit : value);
+}
+
+struct CellMasks {
+  uint32_t touched, inside;
+};
+
+// The window whose corner is the pixel (x, y) of the frame.
+CellMasks classify(const Filling& f, int x, int y, Window& w) {
+  const SetupTriangle& t = *f.triangle;
+  int32_t at_corner[3];
+  for (int k = 0; k < 3; ++k) {
+    const int next = k == 2 ? 0 : k + 1;
+    at_corner[k] = cut_off(make_edge(t.x[k], t.y[k], t.x[next], t.y[next], x, y).value);
+  }
+  const InverseDepth<Double> plane{Double(t.across), Double(t.down), Double(t.at_0)};
+  CellMasks masks{0, 0};
+  for (int g = 0; g < kGroups; ++g) {
+    const int first = g * kLanes;
+    Mask touched = mask_of_bits(~uint64_t{0}), inside = touched;
+    for (int k = 0; k < 3; ++k) {
+      const Int value = Int(at_corner[k]) + f.edge[k][g] * Int(kCellSide);
+      store(w.edge[k] + first, value);
+      touched = both(touched, value + Int(f.greatest_growth[k]) >= Int(0));
+      inside = both(inside, value + Int(f.least_growth[k]) >= Int(0));
+    }
+    masks.touched |= bits(touched) << first;
+    masks.inside |= bits(inside) << first;
+    const Int px = Int(x) + load(kLaneX + first) * Int(kCellSide);
+    const Int py = Int(y) + load(kLaneY + first) * Int(kCellSide);
+    const Float depth = narrow(at_center(plane, widen(to_float(px)), widen(to_float(py))));
+    store(w.at_corner + first, depth);
+    store(w.greatest + first, sum_within(t, depth, Float(f.greatest_across), Float(f.greatest_down)));
+  }
+  return masks;
+}
+
+// Clears the pixels where a cut-out triangle is not there; the cell's corner is (x, y).
+uint32_t keep_there(const RasterView& view, const Filling& f, int x, int y, int first, uint32_t pixels) {
+  const uint32_t number = f.triangle->triangle;
   for (int lane = 0; lane < kLanes; ++lane) {
     if (!(pixels >> lane & 1u)) continue;
-    const auto point =
-        visible_point(*view.camera, view.triangles[number], x + kLaneX[lane], y + kLaneY[lane]);
-    if (!cut_outs.is_there(cut_outs.scene, number, point.u, point.v)) pixels &= ~(1u << lane);
+    const auto point = visible_point(*view.camera, view.triangles[number], x + kLaneX[first + lane],
+                                     y + kLaneY[first + lane]);
+    if (!f.cut_outs->is_there(f.cut_outs->scene, number, point.u, point.v)) pixels &= ~(1u << lane);
   }
   return pixels;
 }
 
-// Recomputes the least inverse depth of a covered block.
-void update_least(Tile& tile, int block) {
-  const float* depth = tile.seen->inverse_depth + block * kPacketSize;
-  Float low = load(depth);
-  for (int g = kLanes; g < kPacketSize; g += kLanes) low = least(load(depth + g), low);
-  alignas(64) float lanes[kLanes];
-  store(lanes, low);
-  float lowest = lanes[0];
-  for (int i = 1; i < kLanes; ++i) lowest = lanes[i] < lowest ? lanes[i] : lowest;
-  tile.least[block] = lowest;
-
-  tile.least_of_all = tile.least[0];
-  for (int i = 1; i < kTileBlocks; ++i) {
-    if (tile.least[i] < tile.least_of_all) tile.least_of_all = tile.least[i];
-  }
+void update_least(Tile& tile, int cell) {
+  Float low = load(tile.inverse_depth + cell * kCellPixels);
+  for (int g = 1; g < kGroups; ++g)
+    low = least(load(tile.inverse_depth + cell * kCellPixels + g * kLanes), low);
+  tile.least[cell] = least_lane(low);
+  tile.least_of_all_is_old = true;
 }
 
-// Fills rows [y0, y1) of a block whose corner is the pixel (x, y) of the frame. `cut_outs` is null for
-// a triangle without holes.
-void fill_block(const RasterView& view, uint32_t number, const CutOuts* cut_outs, const Crossing& crossing,
-                const DepthPlane& plane, int x, int y, int y0, int y1, Tile& tile, int block) {
-  float* depths = tile.seen->inverse_depth + block * kPacketSize;
-  uint32_t* numbers = tile.seen->triangle + block * kPacketSize;
-  uint64_t written = 0;
-  bool least_lost = false;
-  for (int g = y0 * kBlockSide / kLanes * kLanes; g < y1 * kBlockSide; g += kLanes) {
-    const int gx = g % kBlockSide, gy = g / kBlockSide;
-    const Float fx = to_float(load(kLaneX) + Int(gx)), fy = to_float(load(kLaneY) + Int(gy));
-    Float depth = (Float(plane.at_corner) + Float(plane.across) * fx) + Float(plane.down) * fy;
-    depth = greatest(depth, Float(plane.least));
-    depth = least(depth, Float(plane.greatest));
+enum class Cell { inside, across };
 
-    const Float old_depth = load(depths + g);
-    const Uint old_number = load(numbers + g);
-    Mask wins = either(depth > old_depth, both(depth == old_depth, Uint(number) < old_number));
-    wins = both(wins, depth >= Float(view.least_inverse_depth));
-    for (int k = 0; k < crossing.count; ++k) {
-      const int32_t value = crossing.value[k] + gx * crossing.across[k] + gy * crossing.down[k];
-      wins = both(wins, Int(value) + crossing.lanes[k] >= Int(0));
+// Fills a cell, the i-th of the window.
+template <Cell kind>
+inline void fill_cell(const RasterView& view, const Filling& f, const Window& w, int i, int cell,
+                      Tile& tile) {
+  const SetupTriangle& t = *f.triangle;
+  float* const depths = tile.inverse_depth + cell * kCellPixels;
+  uint32_t* const numbers = tile.triangle + cell * kCellPixels;
+  uint32_t written = 0;
+  bool least_lost = false;
+  for (int g = 0; g < kGroups; ++g) {
+    const int first = g * kLanes;
+    const Float depth = sum_within(t, Float(w.at_corner[i]), f.across[g], f.down[g]);
+    const Float old_depth = load(depths + first);
+    const Uint old_number = load(numbers + first);
+    Mask wins = either(depth > old_depth, both(depth == old_depth, Uint(t.triangle) < old_number));
+    if (kind == Cell::across) {
+      const Int value = (Int(w.edge[0][i]) + f.edge[0][g]) | (Int(w.edge[1][i]) + f.edge[1][g]) |
+                        (Int(w.edge[2][i]) + f.edge[2][g]);
+      wins = both(wins, value >= Int(0));
     }
     uint32_t won = bits(wins);
-    if (won != 0 && cut_outs != nullptr) {
-      won = keep_there(view, *cut_outs, number, x + gx, y + gy, won);
+    if (f.cut_outs != nullptr && won != 0) {
+      const int x = tile.x + cell % kCellsAcross * kCellSide, y = tile.y + cell / kCellsAcross * kCellSide;
+      won = keep_there(view, f, x, y, first, won);
       wins = mask_of_bits(won);
     }
-    if (won == 0) continue;
-    least_lost |= any(both(wins, old_depth <= Float(tile.least[block])));
-    store(depths + g, select(wins, depth, old_depth));
-    store(numbers + g, select(wins, Uint(number), old_number));
-    written |= static_cast<uint64_t>(won) << g;
+    least_lost |= any(both(wins, old_depth <= Float(tile.least[cell])));
+    store(depths + first, select(wins, depth, old_depth));
+    store(numbers + first, select(wins, Uint(t.triangle), old_number));
+    written |= won << first;
   }
-  tile.covered[block] |= written;
-  if (least_lost && tile.covered[block] == ~uint64_t{0}) update_least(tile, block);
+  tile.covered[cell] |= written;
+  if (least_lost && tile.covered[cell] == kWholeCell) update_least(tile, cell);
 }
 
 void fill_triangle(const RasterView& view, const SetupTriangle& t, Tile& tile) {
   PixelBox box = centers_within(t.x, t.y);
   box = intersection({box.x0 - tile.x, box.y0 - tile.y, box.x1 - tile.x, box.y1 - tile.y}, tile.window);
   if (vitral::is_empty(box)) return;
-
-  Edges edges;
-  for (int k = 0; k < 3; ++k) {
-    const int next = k == 2 ? 0 : k + 1;
-    Edge& e = edges.edge[k];
-    e = make_edge(t.x[k], t.y[k], t.x[next], t.y[next], tile.x, tile.y);
-    if (e.value + greatest_growth(e, kTileSide) < 0) return;
-    edges.lanes[k] = load(kLaneX) * Int(e.across) + load(kLaneY) * Int(e.down);
-  }
-  const bool is_cut_out =
-      view.cut_outs != nullptr && (view.triangles[t.triangle].flags & kCutOutTriangle) != 0;
-  const CutOuts* const cut_outs = is_cut_out ? view.cut_outs : nullptr;
-
-  for (int by = box.y0 & -kBlockSide; by < box.y1; by += kBlockSide) {
-    for (int bx = box.x0 & -kBlockSide; bx < box.x1; bx += kBlockSide) {
-      const int block = by / kBlockSide * kTileBlocksAcross + bx / kBlockSide;
-      Crossing crossing;
-      if (!find_crossing(edges, bx, by, crossing)) continue;
-      const DepthPlane plane = depth_plane(t, tile.x + bx, tile.y + by);
-      if (greatest_in_block(plane) < tile.least[block]) continue;
-      const int y0 = box.y0 > by ? box.y0 - by : 0;
-      const int y1 = box.y1 < by + kBlockSide ? box.y1 - by : kBlockSide;
-      fill_block(view, t.triangle, cut_outs, crossing, plane, tile.x + bx, tile.y + by, y0, y1, tile, block);
+  const Filling f = make_filling(view, t);
+  const int x1 = (box.x1 - 1) / kCellSide, y1 = (box.y1 - 1) / kCellSide;  // the last cells
+  for (int y = box.y0 / kCellSide; y <= y1; y += kCellSide) {
+    for (int x = box.x0 / kCellSide; x <= x1; x += kCellSide) {
+      Window w;
+      const CellMasks masks = classify(f, tile.x + x * kCellSide, tile.y + y * kCellSide, w);
+      const uint32_t columns = x1 - x >= 3 ? 0xffffu : 0x1111u * ((2u << (x1 - x)) - 1);
+      const uint32_t rows = y1 - y >= 3 ? 0xffffu : (16u << (4 * (y1 - y))) - 1;
+      for (uint32_t left = masks.touched & columns & rows; left != 0; left &= left - 1) {
+        const int i = __builtin_ctz(left);
+        const int cell = (y + i / kCellSide) * kCellsAcross + x + i % kCellSide;
+        if (w.greatest[i] < tile.least[cell]) continue;
+        if (masks.inside >> i & 1u) {
+          fill_cell<Cell::inside>(view, f, w, i, cell, tile);
+        } else {
+          fill_cell<Cell::across>(view, f, w, i, cell, tile);
+        }
+      }
     }
   }
 }
 
-// Pixels that are not wanted count as covered by something nearer than all.
-void mask_unwanted(const PixelBox& window, int block, Tile& tile) {
-  const int x = block % kTileBlocksAcross * kBlockSide, y = block / kTileBlocksAcross * kBlockSide;
-  for (int i = 0; i < kPacketSize; ++i) {
-    const int px = x + i % kBlockSide, py = y + i / kBlockSide;
-    if (px >= window.x0 && px < window.x1 && py >= window.y0 && py < window.y1) continue;
-    tile.covered[block] |= uint64_t{1} << i;
-    tile.seen->inverse_depth[block * kPacketSize + i] = __builtin_inff();
+void clear(const RasterView& view, Tile& tile) {
+  for (int i = 0; i < kCells * kCellPixels; i += kLanes) {
+    store(tile.inverse_depth + i, Float(view.least_inverse_depth));
+    store(tile.triangle + i, Uint(kNoTriangle));
   }
-}
-
-void clear(const PixelBox& window, Tile& tile) {
-  for (int g = 0; g < kTileBlocks * kPacketSize; g += kLanes) {
-    store(tile.seen->inverse_depth + g, Float(0.0f));
-    store(tile.seen->triangle + g, Uint(kNoTriangle));
-  }
-  for (int block = 0; block < kTileBlocks; ++block) tile.covered[block] = 0, tile.least[block] = 0;
+  for (int cell = 0; cell < kCells; ++cell) tile.covered[cell] = 0, tile.least[cell] = 0;
   tile.least_of_all = 0;
-  const bool whole = window.x0 == 0 && window.y0 == 0 && window.x1 == kTileSide && window.y1 == kTileSide;
-  for (int block = 0; block < kTileBlocks && !whole; ++block) mask_unwanted(window, block, tile);
+  tile.least_of_all_is_old = false;
 }
 
-void forget_unwanted(const Tile& tile) {
-  for (int g = 0; g < kTileBlocks * kPacketSize; g += kLanes) {
-    const Mask nothing = load(tile.seen->triangle + g) == Uint(kNoTriangle);
-    store(tile.seen->inverse_depth + g, select(nothing, Float(0.0f), load(tile.seen->inverse_depth + g)));
+// Pixels that are not wanted count as covered by something nearer than all.
+void mask_unwanted(Tile& tile) {
+  const PixelBox& w = tile.window;
+  if (w.x0 == 0 && w.y0 == 0 && w.x1 == kTileSide && w.y1 == kTileSide) return;
+  for (int i = 0; i < kCells * kCellPixels; ++i) {
+    const int cell = i / kCellPixels, pixel = i % kCellPixels;
+    const int x = cell % kCellsAcross * kCellSide + kLaneX[pixel];
+    const int y = cell / kCellsAcross * kCellSide + kLaneY[pixel];
+    if (x >= w.x0 && x < w.x1 && y >= w.y0 && y < w.y1) continue;
+    tile.covered[cell] |= 1u << pixel;
+    tile.inverse_depth[i] = __builtin_inff();
+  }
+}
+
+void update_least_of_all(Tile& tile) {
+  Float low = load(tile.least);
+  for (int cell = kLanes; cell < kCells; cell += kLanes) low = least(load(tile.least + cell), low);
+  tile.least_of_all = least_lane(low);
+  tile.least_of_all_is_old = false;
+}
+
+// From cells to blocks, four pixels of a row at a time.
+void hand_over(const Tile& tile, TileVisibility& out) {
+  for (int g = 0; g < kCells * kCellPixels; g += kLanes) {
+    const Mask nothing = load(tile.triangle + g) == Uint(kNoTriangle);
+    alignas(64) float depth[kLanes];
+    store(depth, select(nothing, Float(0.0f), load(tile.inverse_depth + g)));
+    for (int i = 0; i < kLanes; i += kLanes < 4 ? kLanes : 4) {
+      const int cell = (g + i) / kCellPixels, pixel = (g + i) % kCellPixels;
+      const int x = cell % kCellsAcross * kCellSide + pixel % kCellSide;
+      const int y = cell / kCellsAcross * kCellSide + pixel / kCellSide;
+      const int block = y / kBlockSide * kTileBlocksAcross + x / kBlockSide;
+      const int to = block * kPacketSize + y % kBlockSide * kBlockSide + x % kBlockSide;
+      constexpr size_t bytes = 4 * (kLanes < 4 ? kLanes : 4);
+      __builtin_memcpy(out.inverse_depth + to, depth + i, bytes);
+      __builtin_memcpy(out.triangle + to, tile.triangle + g + i, bytes);
+    }
   }
 }
 
@@ -236,6 +280,7 @@ void fill_bin(const RasterView& view, uint32_t bin, Tile& tile) {
   for (uint64_t i = first; i < end; ++i) {
     if (i + ahead < end) __builtin_prefetch(&setup_triangle(view, view.references[i + ahead]));
     const SetupTriangle& t = setup_triangle(view, view.references[i]);
+    if (tile.least_of_all_is_old) update_least_of_all(tile);
     if (t.greatest >= tile.least_of_all) fill_triangle(view, t, tile);
   }
 }
@@ -262,14 +307,13 @@ void fill_runs(const RasterView& view, uint32_t bin, TileVisibility& seen) {
 
 void fill_tile(const RasterView& view, int tile_x, int tile_y, TileVisibility& out) {
   Tile tile;
-  tile.seen = &out;
   tile.x = tile_x * kTileSide;
   tile.y = tile_y * kTileSide;
   const PixelBox& w = view.window;
   tile.window = intersection({w.x0 - tile.x, w.y0 - tile.y, w.x1 - tile.x, w.y1 - tile.y},
                              {0, 0, kTileSide, kTileSide});
-  clear(tile.window, tile);
-
+  clear(view, tile);
+  mask_unwanted(tile);
   for (int level = 0; level < kBinLevels; ++level) {
     const int shift = level * kBinLevelShift;
     const uint32_t bin =
@@ -277,8 +321,8 @@ void fill_tile(const RasterView& view, int tile_x, int tile_y, TileVisibility& o
         static_cast<uint32_t>((tile_y >> shift) * view.grid.across[level] + (tile_x >> shift));
     fill_bin(view, bin, tile);
   }
+  hand_over(tile, out);
   fill_runs(view, static_cast<uint32_t>(tile_y * view.grid.across[0] + tile_x), out);
-  forget_unwanted(tile);
 }
 
 }  // namespace VITRAL_ISA
