@@ -60,7 +60,8 @@ TEST(RasterClip, ABoxAroundTheCameraCoversEveryPixelOnce) {
     }
     const Projection projection = make_projection(camera, size, size, {});
     std::vector<ScreenVertex> vertices(mesh.positions.size());
-    project_vertices(projection, mesh.positions.data(), mesh.positions.size(), vertices.data());
+    available_kernels().back()->front_end.project_vertices(projection, mesh.positions.data(),
+                                                           mesh.positions.size(), vertices.data());
     for (const Corners& c : mesh.triangles) {
       const uint32_t any = vertices[c[0]].outside | vertices[c[1]].outside | vertices[c[2]].outside;
       const uint32_t all = vertices[c[0]].outside & vertices[c[1]].outside & vertices[c[2]].outside;
@@ -136,16 +137,16 @@ TEST(RasterClip, BothTrianglesAtAnEdgeComputeTheSamePointOnIt) {
     const ClipPolygon p = clip_triangle(one, 0.01), q = clip_triangle(other, 0.01);
     ASSERT_LE(p.corners, kMaxClippedCorners);
     // Points of the near plane on the edge a-b: those with W = near that both polygons have.
-    const bool crosses = (a.w >= 0.01) != (b.w >= 0.01);
+    const bool crosses = (a.z >= 0.01) != (b.z >= 0.01);
     if (!crosses || p.corners < 3 || q.corners < 3) continue;
-    const ClipVertex &in = a.w >= 0.01 ? a : b, &out = a.w >= 0.01 ? b : a;
-    const double s = (in.w - 0.01) / ((in.w - 0.01) - (out.w - 0.01));
+    const ClipVertex &in = a.z >= 0.01 ? a : b, &out = a.z >= 0.01 ? b : a;
+    const double s = (in.z - 0.01) / ((in.z - 0.01) - (out.z - 0.01));
     const ClipVertex expected{in.x + (out.x - in.x) * s, in.y + (out.y - in.y) * s, 0.01};
-    if (outside_planes(expected, 0.01) != 0) continue;
+    if (outside_planes<uint32_t>(expected, 0.01) != 0) continue;
     const auto has = [&](const ClipPolygon& polygon) {
       for (int i = 0; i < polygon.corners; ++i) {
         const ClipVertex& v = polygon.corner[i];
-        if (v.x == expected.x && v.y == expected.y && v.w == expected.w) return true;
+        if (v.x == expected.x && v.y == expected.y && v.z == expected.z) return true;
       }
       return false;
     };

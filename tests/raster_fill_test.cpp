@@ -125,7 +125,7 @@ TEST(RasterFill, EqualDepthGoesToTheLowerNumberInAnyOrder) {
   const Pinhole camera = pixel_camera();
   RasterFrame frame;
   const Kernels& kernels = *available_kernels().back();
-  setup_frame(kernels.setup_triangles, camera, size, size, {}, mesh, nullptr, in_order, frame);
+  setup_frame(kernels.front_end, camera, size, size, {}, mesh, nullptr, in_order, frame);
   const Picture expected = fill_frame(kernels, camera, size, size, frame);
   size_t covered = 0;
   for (const uint32_t t : expected.triangle) {
@@ -159,7 +159,7 @@ TEST(RasterFill, CloseLayersInAnyOrder) {
     const uint32_t expected = static_cast<uint32_t>(std::find(depth.begin(), depth.end(), 0) - depth.begin());
     const Pinhole camera = pixel_camera();
     RasterFrame frame;
-    setup_frame(available_kernels().back()->setup_triangles, camera, size, size, {}, mesh, nullptr, in_order,
+    setup_frame(available_kernels().back()->front_end, camera, size, size, {}, mesh, nullptr, in_order,
                 frame);
     for (int shuffle = 0; shuffle < 6; ++shuffle) {
       for (const Kernels* kernels : available_kernels()) {
@@ -216,7 +216,7 @@ TEST(RasterFill, TheOrderOfTheWorkDoesNotMatter) {
   }
   RasterFrame expected, backwards, threaded;
   const auto set_up = [&](const ForEach& for_each, RasterFrame& frame) {
-    const SetupKernel kernel = available_kernels().back()->setup_triangles;
+    const FrontEnd& kernel = available_kernels().back()->front_end;
     setup_frame(kernel, pixel_camera(), 200, 200, {}, mesh, nullptr, for_each, frame);
   };
   set_up(in_order, expected);
@@ -342,8 +342,8 @@ TEST(RasterFill, MemoryOfTheBinsIsBounded) {
     add_triangle(mesh, at_pixel(-1, -1, depth), at_pixel(40000, -1, depth), at_pixel(-1, 40000, depth));
   }
   RasterFrame frame;
-  setup_frame(available_kernels().back()->setup_triangles, pixel_camera(), kMaxImageSide, kMaxImageSide, {},
-              mesh, nullptr, in_order, frame);
+  setup_frame(available_kernels().back()->front_end, pixel_camera(), kMaxImageSide, kMaxImageSide, {}, mesh,
+              nullptr, in_order, frame);
   EXPECT_GE(frame.bins.references.items.size(), 1000u);
   EXPECT_LE(frame.bins.references.items.size(), 1000u * kMaxBinsTouched);
   const Pinhole camera = pixel_camera();

@@ -121,7 +121,7 @@ inline Picture fill_frame(const Kernels& kernels, const Pinhole& camera, int wid
 inline Picture rasterize(const Kernels& kernels, const Pinhole& camera, int width, int height,
                          const Mesh& mesh, const Options& options = {}) {
   RasterFrame frame;
-  setup_frame(kernels.setup_triangles, camera, width, height, options.crop, mesh, options.triangles, in_order,
+  setup_frame(kernels.front_end, camera, width, height, options.crop, mesh, options.triangles, in_order,
               frame);
   return fill_frame(kernels, camera, width, height, frame, options);
 }

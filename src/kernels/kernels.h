@@ -53,8 +53,9 @@ struct Kernels {
   void (*ambient_blocks)(const KdView& tree, const PointPacket* const* points, int count,
                          const AmbientSettings& settings, FreeRays* out);
 
-  // Triangles [begin, end) of the mesh, no more than kChunkTriangles, ready to be filled or filled already.
-  SetupKernel setup_triangles;
+  // Vertices to the screen; positions that are not finite come out as outside of every plane. And triangles
+  // [begin, end) of the mesh, no more than kChunkTriangles, ready to be filled or filled already.
+  FrontEnd front_end;
 
   // The nearest triangle at every pixel of the tile in that column and row, which must touch the view's
   // window.

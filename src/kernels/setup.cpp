@@ -1,6 +1,7 @@
-// Sets up triangles a register at a time. Most triangles of a detailed mesh cover a pixel or two: for
-// these it costs more to hand them from tile to block to pixel than to try all pixels of their bounding
-// box here. The stages, each over a whole batch with the triangles that are left side by side:
+// Brings vertices to the screen and sets up triangles, a register at a time. Most triangles of a detailed
+// mesh cover a pixel or two: for these it costs more to hand them from tile to block to pixel than to try all
+// pixels of their bounding box here. The stages, each over a whole batch with the triangles that are left
+// side by side:
 //   1. sort out: nothing to see; to be clipped or very large (the caller's); small; and all others
 //   2. small ones: which of kSmallSide x kSmallSide pixels are covered, and how deep they are there
 //   3. the others: the plane of their inverse depth
@@ -241,7 +242,8 @@ void emit_fragments(const SetupInput& in, const Queue& queue, SetupOutput& out) 
 
 void prefetch_positions(const SetupInput& in, const Queue& queue, uint32_t g) {
   for (uint32_t i = g; i < queue.count && i < g + kLanes; ++i) {
-    for (size_t k = 0; k < 3; ++k) __builtin_prefetch(in.positions + in.corners[size_t{3} * queue.number[i] + k]);
+    for (size_t k = 0; k < 3; ++k)
+      __builtin_prefetch(in.positions + in.corners[size_t{3} * queue.number[i] + k]);
   }
 }
 
@@ -292,6 +294,32 @@ void emit_triangles(const SetupInput& in, const Queue& queue, SetupOutput& out) 
 }
 
 }  // namespace
+
+void project_vertices(const Projection& projection, const Vec3* positions, size_t count, ScreenVertex* out) {
+  const auto project_register = [&projection](const Vec3* from, ScreenVertex* to) {
+    Float p[4];
+    load_records([from](int lane) { return &from[lane].x; }, p);
+    const Vec3T<Double> v = project(projection, Vec3T<Double>{widen(p[0]), widen(p[1]), widen(p[2])});
+    const Uint outside = outside_planes<Uint>(v, projection.near);
+    const Mask seen = outside == Uint(0);
+    const Double inverse_w = Double(1.0) / select(seen, v.z, Double(1.0));
+    const auto place = [&](const Double& x) {
+      return from_bits(fine_place<Int>(select(seen, x * inverse_w, Double(0.0))));
+    };
+    const Float record[4] = {place(v.x), place(v.y), select(seen, narrow(inverse_w), Float(0.0f)),
+                             from_bits(outside)};
+    store_records([to](int lane) { return &to[lane]; }, record);
+  };
+
+  // A position is read together with the number after it, which the last one does not have.
+  size_t first = 0;
+  for (; first + kLanes < count; first += kLanes) project_register(positions + first, out + first);
+  Vec3 rest[kLanes + 1] = {};
+  ScreenVertex last[kLanes];
+  for (size_t i = first; i < count; ++i) rest[i - first] = positions[i];
+  project_register(rest, last);
+  for (size_t i = first; i < count; ++i) out[i] = last[i - first];
+}
 
 void setup_triangles(const SetupInput& in, uint32_t begin, uint32_t end, SetupOutput& out) {
   out.other_count = out.triangle_count = out.fragment_count = 0;

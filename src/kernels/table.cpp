@@ -21,7 +21,7 @@ const Kernels kTable = {
     trace_shadows,
     ambient_occlusion,
     ambient_blocks,
-    setup_triangles,
+    {project_vertices, setup_triangles},
     fill_tile,
     intersect_visible,
     count_closest,

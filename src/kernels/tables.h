@@ -27,6 +27,7 @@ void count_shadows(const KdView& tree, const Light& light, GlassRule glass, cons
                    int count, ShadowAnswer* out, const WorkCounts& work);
 void count_ambient(const KdView& tree, const PointPacket* const* points, int count,
                    const AmbientSettings& settings, FreeRays* out, const WorkCounts& work);
+void project_vertices(const Projection& projection, const Vec3* positions, size_t count, ScreenVertex* out);
 void setup_triangles(const SetupInput& in, uint32_t begin, uint32_t end, SetupOutput& out);
 void fill_tile(const RasterView& view, int tile_x, int tile_y, TileVisibility& out);
 void intersect_visible(const Pinhole& camera, const KdTriangle* triangles, int x, int y,

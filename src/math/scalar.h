@@ -70,6 +70,12 @@ static inline float to_float(uint32_t x) {
 static inline int32_t to_int(float x) {
   return static_cast<int32_t>(x);
 }  // towards zero; |x| < 2^31
+static inline int32_t to_int(double x) {
+  return static_cast<int32_t>(x);
+}
+static inline double to_double(int32_t x) {
+  return x;
+}
 
 static inline uint32_t as_bits(float x) {
   uint32_t bits;
@@ -83,6 +89,9 @@ static inline float from_bits(uint32_t bits) {
   float x;
   std::memcpy(&x, &bits, sizeof x);
   return x;
+}
+static inline float from_bits(int32_t bits) {
+  return from_bits(static_cast<uint32_t>(bits));
 }
 
 }  // namespace vitral

@@ -2,8 +2,9 @@
 
 namespace vitral {
 
-void transform_vertices(const Pinhole& camera, int width, int height, const Rectangle& crop, const Mesh& mesh,
-                        const ForEach& for_each, RasterFrame& frame) {
+void transform_vertices(ProjectKernel kernel, const Pinhole& camera, int width, int height,
+                        const Rectangle& crop, const Mesh& mesh, const ForEach& for_each,
+                        RasterFrame& frame) {
   frame.projection = make_projection(camera, width, height, crop);
   frame.grid = make_grid(width, height);
 
@@ -13,7 +14,7 @@ void transform_vertices(const Pinhole& camera, int width, int height, const Rect
   for_each((vertices + per_piece - 1) / per_piece, [&](size_t piece) {
     const size_t begin = piece * per_piece;
     const size_t count = begin + per_piece < vertices ? per_piece : vertices - begin;
-    project_vertices(frame.projection, mesh.positions.data() + begin, count, frame.vertices.data() + begin);
+    kernel(frame.projection, mesh.positions.data() + begin, count, frame.vertices.data() + begin);
   });
 }
 
@@ -36,10 +37,10 @@ void bin_triangles(const ForEach& for_each, RasterFrame& frame) {
   merge_bins(frame.grid, frame.chunks, for_each, frame.bins);
 }
 
-void setup_frame(SetupKernel kernel, const Pinhole& camera, int width, int height, const Rectangle& crop,
+void setup_frame(const FrontEnd& kernels, const Pinhole& camera, int width, int height, const Rectangle& crop,
                  const Mesh& mesh, const KdTriangle* flags_of, const ForEach& for_each, RasterFrame& frame) {
-  transform_vertices(camera, width, height, crop, mesh, for_each, frame);
-  setup_triangles(kernel, mesh, flags_of, for_each, frame);
+  transform_vertices(kernels.project_vertices, camera, width, height, crop, mesh, for_each, frame);
+  setup_triangles(kernels.setup_triangles, mesh, flags_of, for_each, frame);
   bin_triangles(for_each, frame);
 }
 

@@ -5,7 +5,7 @@
 
 namespace vitral {
 
-// (X, Y, W) of a point.
+// (X, Y, W) of a point, W as z.
 template <class D>
 static inline Vec3T<D> project(const Projection& p, const Vec3T<D>& point) {
   const auto same = [](const Vec3d& v) { return Vec3T<D>{D(v.x), D(v.y), D(v.z)}; };
@@ -13,13 +13,37 @@ static inline Vec3T<D> project(const Projection& p, const Vec3T<D>& point) {
   return {dot(same(p.row_x), d), dot(same(p.row_y), d), dot(same(p.row_w), d)};
 }
 
+// The clip planes: the near plane W = near, and the four sides of the guard band.
+inline constexpr int kClipPlanes = 5;
+
+// Not negative inside; `v` as from project().
+template <class D>
+static inline D plane_distance(const Vec3T<D>& v, int plane, double near) {
+  const D guard = D(static_cast<double>(kGuardBand)) * v.z;
+  return plane == 0   ? v.z - D(near)
+         : plane == 1 ? v.x + guard
+         : plane == 2 ? guard - v.x
+         : plane == 3 ? v.y + guard
+                      : guard - v.y;
+}
+
+// A bit for every plane that the vertex is outside of; NaN is outside.
+template <class U, class D>
+static inline U outside_planes(const Vec3T<D>& v, double near) {
+  U outside = U(0);
+  for (int plane = 0; plane < kClipPlanes; ++plane)
+    outside = outside | select(plane_distance(v, plane, near) >= D(0.0), U(0), U(1u << plane));
+  return outside;
+}
+
 // To 2^-kFineBits pixel, rounded down. Clipped vertices may overshoot the guard band by a rounding.
-static inline int32_t fine_place(double pixels) {
-  constexpr double limit = kGuardBand + 1;
-  const double inside = pixels < -limit ? -limit : pixels > limit ? limit : pixels;
-  const double scaled = inside * (1 << kFineBits);
-  const int32_t whole = static_cast<int32_t>(scaled);
-  return whole - (static_cast<double>(whole) > scaled ? 1 : 0);
+template <class I, class D>
+static inline I fine_place(const D& pixels) {
+  const D limit = D(static_cast<double>(kGuardBand + 1));
+  const D raised = select(pixels < -limit, -limit, pixels);
+  const D scaled = select(raised > limit, limit, raised) * D(static_cast<double>(1 << kFineBits));
+  const I whole = to_int(scaled);
+  return whole - select(to_double(whole) > scaled, I(1), I(0));
 }
 
 // From 2^-kFineBits to the nearest 1/256 pixel, halves up. As the fine place is rounded down, this is the

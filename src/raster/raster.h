@@ -16,6 +16,7 @@
 #include "vitral/ray.h"
 #include "vitral/vec.h"
 
+#include <cstddef>
 #include <cstdint>
 
 namespace vitral {
@@ -105,8 +106,15 @@ struct SetupOutput {
   float inverse_depth[kMostFragments + 16];
   uint32_t triangle[kMostFragments + 16];
 };
-// Sets up the triangles [begin, end), no more than kChunkTriangles.
+
+// The kernels that come before any tile (kernels/kernels.h).
+using ProjectKernel = void (*)(const Projection& projection, const Vec3* positions, size_t count,
+                               ScreenVertex* out);
 using SetupKernel = void (*)(const SetupInput& in, uint32_t begin, uint32_t end, SetupOutput& out);
+struct FrontEnd {
+  ProjectKernel project_vertices;
+  SetupKernel setup_triangles;
+};
 
 // Bins are squares of 32, 128, 512, 2048 and 8192 pixels: a triangle goes to the bins of the finest
 // level of which it touches no more than kMaxBinsTouched, so that the memory is bounded whatever the

@@ -13,11 +13,6 @@
 namespace vitral {
 namespace {
 
-ClipVertex clip_vertex(const Projection& p, const Vec3& position) {
-  const Vec3d v = project(p, to_double(position));
-  return {v.x, v.y, v.z};
-}
-
 struct SnappedPolygon {
   int32_t x[kMaxClippedCorners], y[kMaxClippedCorners];
   int corners;
@@ -38,11 +33,11 @@ SnappedPolygon clip_and_snap(const Projection& projection, const ClipVertex tria
   if (clipped.corners < 3) return result;
   for (int i = 0; i < clipped.corners; ++i) {
     const ClipVertex& v = clipped.corner[i];
-    const double inverse_w = 1 / v.w;
+    const double inverse_w = 1 / v.z;
     const double x = v.x * inverse_w, y = v.y * inverse_w;
     const bool finite = x - x == 0 && y - y == 0 && inverse_w - inverse_w == 0;
     if (!finite) return SnappedPolygon{};
-    add_corner(snapped(fine_place(x)), snapped(fine_place(y)), narrow(inverse_w), result);
+    add_corner(snapped(fine_place<int32_t>(x)), snapped(fine_place<int32_t>(y)), narrow(inverse_w), result);
   }
   return result;
 }
@@ -114,19 +109,6 @@ Projection make_projection(const Pinhole& camera, int width, int height, const R
   return p;
 }
 
-void project_vertices(const Projection& projection, const Vec3* positions, size_t count, ScreenVertex* out) {
-  for (size_t i = 0; i < count; ++i) {
-    const ClipVertex v = clip_vertex(projection, positions[i]);
-    const uint32_t outside = outside_planes(v, projection.near);
-    if (outside != 0) {
-      out[i] = {0, 0, 0, outside};
-      continue;
-    }
-    const double inverse_w = 1 / v.w;
-    out[i] = {fine_place(v.x * inverse_w), fine_place(v.y * inverse_w), narrow(inverse_w), 0};
-  }
-}
-
 namespace {
 
 // A triangle that the kernel left to us.
@@ -140,7 +122,7 @@ void setup_other(const SetupInput& in, const BinGrid& grid, const Mesh& mesh, ui
       add_corner(snapped(v->x), snapped(v->y), v->inverse_depth, polygon);
   } else {
     ClipVertex corner[3];
-    for (size_t k = 0; k < 3; ++k) corner[k] = clip_vertex(in.projection, mesh.positions[c[k]]);
+    for (size_t k = 0; k < 3; ++k) corner[k] = project(in.projection, to_double(mesh.positions[c[k]]));
     polygon = clip_and_snap(in.projection, corner);
   }
   emit(in.projection, grid, mesh, number, polygon, out);

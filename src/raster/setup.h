@@ -16,9 +16,6 @@ namespace vitral {
 // An empty crop means the whole frame.
 Projection make_projection(const Pinhole& camera, int width, int height, const Rectangle& crop);
 
-// Positions that are not finite come out as outside of every plane.
-void project_vertices(const Projection& projection, const Vec3* positions, size_t count, ScreenVertex* out);
-
 // What one chunk of the mesh's triangles becomes: triangles to be filled, and pixels that are already.
 struct BinEntry {
   uint32_t bin;

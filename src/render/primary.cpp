@@ -17,7 +17,7 @@ RasterView setup_raster(const FrameContext& frame, const Rectangle& crop, Thread
   };
   const KdTriangle* triangles = frame.accelerator.triangles.data();
   const bool holes = frame.accelerator.has_cut_outs;
-  setup_frame(frame.kernels.setup_triangles, frame.camera, frame.settings.width, frame.settings.height, crop,
+  setup_frame(frame.kernels.front_end, frame.camera, frame.settings.width, frame.settings.height, crop,
               frame.scene.mesh, holes ? triangles : nullptr, for_each, raster);
   return make_view(raster, frame.camera, triangles, holes ? &frame.accelerator.view.cut_outs : nullptr);
 }

@@ -85,6 +85,10 @@ template <class Address>
 static inline void load_records(const Address& address, Float out[4]) {
   std::memcpy(out, address(0), 4 * sizeof(float));
 }
+template <class Address>
+static inline void store_records(const Address& address, const Float in[4]) {
+  std::memcpy(address(0), in, 4 * sizeof(float));
+}
 
 #else
 
@@ -92,6 +96,7 @@ typedef float FloatVector __attribute__((vector_size(4 * LANES)));
 typedef int32_t IntVector __attribute__((vector_size(4 * LANES)));
 typedef uint32_t UintVector __attribute__((vector_size(4 * LANES)));
 typedef float HalfFloatVector __attribute__((vector_size(2 * LANES)));
+typedef int32_t HalfIntVector __attribute__((vector_size(2 * LANES)));
 typedef double DoubleVector __attribute__((vector_size(4 * LANES)));
 typedef int64_t LongVector __attribute__((vector_size(4 * LANES)));
 
@@ -221,7 +226,6 @@ static inline Int select(Mask m, Int yes, Int no) {
 static inline Uint select(Mask m, Uint yes, Uint no) {
   return m.v ? yes.v : no.v;
 }
-typedef int32_t HalfIntVector __attribute__((vector_size(2 * LANES)));
 static inline Double select(Mask m, const Double& yes, const Double& no) {
   HalfIntVector half[2];
   std::memcpy(half, &m.v, sizeof half);
@@ -371,6 +375,9 @@ static inline Uint as_bits(Float a) {
 static inline Int as_int(Float a) {
   return IntVector(a.v);
 }
+static inline Float from_bits(Int a) {
+  return FloatVector(a.v);
+}
 static inline Float from_bits(Uint a) {
   return FloatVector(a.v);
 }
@@ -408,6 +415,20 @@ static inline Float narrow(const Double& a) {
   return v;
 }
 
+static inline Double to_double(Int a) {
+  HalfIntVector half[2];
+  std::memcpy(half, &a.v, sizeof half);
+  return {__builtin_convertvector(half[0], DoubleVector), __builtin_convertvector(half[1], DoubleVector)};
+}
+// Towards zero; |a| < 2^31.
+static inline Int to_int(const Double& a) {
+  const HalfIntVector half[2] = {__builtin_convertvector(a.lo, HalfIntVector),
+                                 __builtin_convertvector(a.hi, HalfIntVector)};
+  IntVector v;
+  std::memcpy(&v, half, sizeof v);
+  return v;
+}
+
 template <class V, class T>
 static inline V load_vector(const T* p) {
   V v;
@@ -433,44 +454,67 @@ static inline void store(uint32_t* p, Uint a) {
   std::memcpy(p, &a.v, sizeof a.v);
 }
 
-// Records of four numbers, one for each lane at address(lane), to four registers of their components.
-template <class Address>
-static inline void load_records(const Address& address, Float out[4]) {
+// Records of four numbers, one for each lane at address(lane), to four registers of their components and
+// back. A row holds the records of every fourth lane; within 16 bytes of all rows it is a 4x4 matrix.
+struct Rows {
 #if LANES == 16
   __m512 row[4];
-  for (int i = 0; i < 4; ++i) {
-    const auto record = [&](int lane) { return _mm_loadu_ps(address(lane)); };
-    row[i] = _mm512_zextps128_ps512(record(i));
-    row[i] = _mm512_maskz_insertf32x4(0xffff, row[i], record(i + 4), 1);
-    row[i] = _mm512_maskz_insertf32x4(0xffff, row[i], record(i + 8), 2);
-    row[i] = _mm512_maskz_insertf32x4(0xffff, row[i], record(i + 12), 3);
-  }
-  const __m512 a = _mm512_maskz_unpacklo_ps(0xffff, row[0], row[1]);
-  const __m512 b = _mm512_maskz_unpackhi_ps(0xffff, row[0], row[1]);
-  const __m512 c = _mm512_maskz_unpacklo_ps(0xffff, row[2], row[3]);
-  const __m512 d = _mm512_maskz_unpackhi_ps(0xffff, row[2], row[3]);
-  out[0] = FloatVector(_mm512_maskz_shuffle_ps(0xffff, a, c, 0x44));
-  out[1] = FloatVector(_mm512_maskz_shuffle_ps(0xffff, a, c, 0xee));
-  out[2] = FloatVector(_mm512_maskz_shuffle_ps(0xffff, b, d, 0x44));
-  out[3] = FloatVector(_mm512_maskz_shuffle_ps(0xffff, b, d, 0xee));
 #elif LANES == 8
   __m256 row[4];
-  for (int i = 0; i < 4; ++i) {
-    row[i] = _mm256_insertf128_ps(_mm256_zextps128_ps256(_mm_loadu_ps(address(i))),
-                                  _mm_loadu_ps(address(i + 4)), 1);
-  }
-  const __m256 a = _mm256_unpacklo_ps(row[0], row[1]), b = _mm256_unpackhi_ps(row[0], row[1]);
-  const __m256 c = _mm256_unpacklo_ps(row[2], row[3]), d = _mm256_unpackhi_ps(row[2], row[3]);
-  out[0] = FloatVector(_mm256_shuffle_ps(a, c, 0x44));
-  out[1] = FloatVector(_mm256_shuffle_ps(a, c, 0xee));
-  out[2] = FloatVector(_mm256_shuffle_ps(b, d, 0x44));
-  out[3] = FloatVector(_mm256_shuffle_ps(b, d, 0xee));
 #else
   __m128 row[4];
-  for (int i = 0; i < 4; ++i) row[i] = _mm_loadu_ps(address(i));
-  _MM_TRANSPOSE4_PS(row[0], row[1], row[2], row[3]);
-  for (int i = 0; i < 4; ++i) out[i] = FloatVector(row[i]);
 #endif
+};
+static inline void transpose(Rows& r) {
+#if LANES == 16
+  const __m512 a = _mm512_maskz_unpacklo_ps(0xffff, r.row[0], r.row[1]);
+  const __m512 b = _mm512_maskz_unpackhi_ps(0xffff, r.row[0], r.row[1]);
+  const __m512 c = _mm512_maskz_unpacklo_ps(0xffff, r.row[2], r.row[3]);
+  const __m512 d = _mm512_maskz_unpackhi_ps(0xffff, r.row[2], r.row[3]);
+  r.row[0] = _mm512_maskz_shuffle_ps(0xffff, a, c, 0x44);
+  r.row[1] = _mm512_maskz_shuffle_ps(0xffff, a, c, 0xee);
+  r.row[2] = _mm512_maskz_shuffle_ps(0xffff, b, d, 0x44);
+  r.row[3] = _mm512_maskz_shuffle_ps(0xffff, b, d, 0xee);
+#elif LANES == 8
+  const __m256 a = _mm256_unpacklo_ps(r.row[0], r.row[1]), b = _mm256_unpackhi_ps(r.row[0], r.row[1]);
+  const __m256 c = _mm256_unpacklo_ps(r.row[2], r.row[3]), d = _mm256_unpackhi_ps(r.row[2], r.row[3]);
+  r.row[0] = _mm256_shuffle_ps(a, c, 0x44);
+  r.row[1] = _mm256_shuffle_ps(a, c, 0xee);
+  r.row[2] = _mm256_shuffle_ps(b, d, 0x44);
+  r.row[3] = _mm256_shuffle_ps(b, d, 0xee);
+#else
+  _MM_TRANSPOSE4_PS(r.row[0], r.row[1], r.row[2], r.row[3]);
+#endif
+}
+template <class Address>
+static inline void load_records(const Address& address, Float out[4]) {
+  Rows r;
+  for (int i = 0; i < 4; ++i) {
+    const auto record = [&](int lane) { return _mm_loadu_ps(address(lane)); };
+#if LANES == 16
+    r.row[i] = _mm512_zextps128_ps512(record(i));
+    r.row[i] = _mm512_maskz_insertf32x4(0xffff, r.row[i], record(i + 4), 1);
+    r.row[i] = _mm512_maskz_insertf32x4(0xffff, r.row[i], record(i + 8), 2);
+    r.row[i] = _mm512_maskz_insertf32x4(0xffff, r.row[i], record(i + 12), 3);
+#elif LANES == 8
+    r.row[i] = _mm256_insertf128_ps(_mm256_zextps128_ps256(record(i)), record(i + 4), 1);
+#else
+    r.row[i] = record(i);
+#endif
+  }
+  transpose(r);
+  for (int i = 0; i < 4; ++i) out[i] = FloatVector(r.row[i]);
+}
+template <class Address>
+static inline void store_records(const Address& address, const Float in[4]) {
+  Rows r;
+  std::memcpy(r.row, in, sizeof r.row);
+  transpose(r);
+  for (int i = 0; i < 4; ++i) {
+    float lanes[LANES];
+    std::memcpy(lanes, &r.row[i], sizeof lanes);
+    for (int q = 0; q < LANES / 4; ++q) std::memcpy(address(4 * q + i), lanes + 4 * q, 4 * sizeof(float));
+  }
 }
 
 // Stores the lanes of the mask side by side from p on; up to LANES numbers there may be overwritten.
