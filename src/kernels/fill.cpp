@@ -7,8 +7,10 @@
 // triangle number wins. So neither the order of the triangles nor the shape of the tiles can be seen in the
 // result.
 //
-// A cell that is covered whole remembers its least inverse depth, and the tile the least of all cells: what
-// lies behind that is skipped (Greene, Kass and Miller, "Hierarchical Z-Buffer Visibility", SIGGRAPH 1993).
+// A cell that lies whole inside a triangle is nowhere farther than that triangle from then on. It remembers
+// this, and the tile the farthest of its cells: what lies behind is skipped (Greene, Kass and Miller,
+// "Hierarchical Z-Buffer Visibility", SIGGRAPH 1993). What many triangles cover together is not looked for:
+// measured, that costs more than it saves.
 #include "kdtree/kdtree.h"
 #include "kernels/tables.h"
 #include "kernels/visible.h"
@@ -27,7 +29,6 @@ constexpr int kCellsAcross = kTileSide / kCellSide;
 constexpr int kCells = kCellsAcross * kCellsAcross;
 constexpr int kGroups =
     kCellPixels / kLanes;  // registers for the pixels of a cell, or for the cells of a window
-constexpr uint32_t kWholeCell = (1u << kCellPixels) - 1;
 
 // Place of a pixel in a cell, and of a cell in a window of 4x4 cells.
 alignas(64) constexpr int32_t kLaneX[16] = {0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3};
@@ -38,8 +39,7 @@ alignas(64) constexpr int32_t kLaneY[16] = {0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 
 struct Tile {
   alignas(64) float inverse_depth[kCells * kCellPixels];
   alignas(64) uint32_t triangle[kCells * kCellPixels];
-  alignas(64) float least[kCells];  // of the inverse depths, once all pixels are covered; 0 before
-  uint32_t covered[kCells];         // pixels with a triangle, or not wanted
+  alignas(64) float least[kCells];  // no more than any inverse depth of the cell
   float least_of_all;               // no more than any of `least`
   bool least_of_all_is_old;
   int x, y;         // pixel at its corner
@@ -53,14 +53,14 @@ struct Filling {
   int32_t least_growth[3], greatest_growth[3];
   Int edge[3][kGroups];
   Float across[kGroups], down[kGroups];
-  float greatest_across, greatest_down;
+  float least_across, least_down, greatest_across, greatest_down;  // to the farthest pixel of a cell
 };
 
 // Edge values and inverse depths at the corners of 16 cells. Edge values are cut off at 2^30: within a
 // window they grow by less than 15 * 2 * (2^25 + 2^9) < 2^30, so that no sign changes and no sum overflows.
 struct Window {
   alignas(64) int32_t edge[3][16];
-  alignas(64) float at_corner[16], greatest[16];
+  alignas(64) float at_corner[16], least[16], greatest[16];
 };
 
 Filling make_filling(const RasterView& view, const SetupTriangle& t) {
@@ -85,6 +85,8 @@ Filling make_filling(const RasterView& view, const SetupTriangle& t) {
   }
   f.greatest_across = across > 0 ? across * far_side : 0.0f;
   f.greatest_down = down > 0 ? down * far_side : 0.0f;
+  f.least_across = across < 0 ? across * far_side : 0.0f;
+  f.least_down = down < 0 ? down * far_side : 0.0f;
   return f;
 }
 
@@ -129,6 +131,7 @@ CellMasks classify(const Filling& f, int x, int y, Window& w) {
     const Int py = Int(y) + load(kLaneY + first) * Int(kCellSide);
     const Float depth = narrow(at_center(plane, widen(to_float(px)), widen(to_float(py))));
     store(w.at_corner + first, depth);
+    store(w.least + first, sum_within(t, depth, Float(f.least_across), Float(f.least_down)));
     store(w.greatest + first, sum_within(t, depth, Float(f.greatest_across), Float(f.greatest_down)));
   }
   return masks;
@@ -146,14 +149,6 @@ uint32_t keep_there(const RasterView& view, const Filling& f, int x, int y, int 
   return pixels;
 }
 
-void update_least(Tile& tile, int cell) {
-  Float low = load(tile.inverse_depth + cell * kCellPixels);
-  for (int g = 1; g < kGroups; ++g)
-    low = least(load(tile.inverse_depth + cell * kCellPixels + g * kLanes), low);
-  tile.least[cell] = least_lane(low);
-  tile.least_of_all_is_old = true;
-}
-
 enum class Cell { inside, across };
 
 // Fills a cell, the i-th of the window.
@@ -163,8 +158,6 @@ inline void fill_cell(const RasterView& view, const Filling& f, const Window& w,
   const SetupTriangle& t = *f.triangle;
   float* const depths = tile.inverse_depth + cell * kCellPixels;
   uint32_t* const numbers = tile.triangle + cell * kCellPixels;
-  uint32_t written = 0;
-  bool least_lost = false;
   for (int g = 0; g < kGroups; ++g) {
     const int first = g * kLanes;
     const Float depth = sum_within(t, Float(w.at_corner[i]), f.across[g], f.down[g]);
@@ -176,19 +169,17 @@ inline void fill_cell(const RasterView& view, const Filling& f, const Window& w,
                         (Int(w.edge[2][i]) + f.edge[2][g]);
       wins = both(wins, value >= Int(0));
     }
-    uint32_t won = bits(wins);
-    if (f.cut_outs != nullptr && won != 0) {
+    if (f.cut_outs != nullptr && any(wins)) {
       const int x = tile.x + cell % kCellsAcross * kCellSide, y = tile.y + cell / kCellsAcross * kCellSide;
-      won = keep_there(view, f, x, y, first, won);
-      wins = mask_of_bits(won);
+      wins = mask_of_bits(keep_there(view, f, x, y, first, bits(wins)));
     }
-    least_lost |= any(both(wins, old_depth <= Float(tile.least[cell])));
     store(depths + first, select(wins, depth, old_depth));
     store(numbers + first, select(wins, Uint(t.triangle), old_number));
-    written |= won << first;
   }
-  tile.covered[cell] |= written;
-  if (least_lost && tile.covered[cell] == kWholeCell) update_least(tile, cell);
+  if (kind == Cell::inside && f.cut_outs == nullptr && w.least[i] > tile.least[cell]) {
+    tile.least[cell] = w.least[i];
+    tile.least_of_all_is_old = true;
+  }
 }
 
 void fill_triangle(const RasterView& view, const SetupTriangle& t, Tile& tile) {
@@ -222,12 +213,12 @@ void clear(const RasterView& view, Tile& tile) {
     store(tile.inverse_depth + i, Float(view.least_inverse_depth));
     store(tile.triangle + i, Uint(kNoTriangle));
   }
-  for (int cell = 0; cell < kCells; ++cell) tile.covered[cell] = 0, tile.least[cell] = 0;
-  tile.least_of_all = 0;
+  for (int cell = 0; cell < kCells; ++cell) tile.least[cell] = view.least_inverse_depth;
+  tile.least_of_all = view.least_inverse_depth;
   tile.least_of_all_is_old = false;
 }
 
-// Pixels that are not wanted count as covered by something nearer than all.
+// Nothing is nearer than a pixel that is not wanted.
 void mask_unwanted(Tile& tile) {
   const PixelBox& w = tile.window;
   if (w.x0 == 0 && w.y0 == 0 && w.x1 == kTileSide && w.y1 == kTileSide) return;
@@ -236,7 +227,6 @@ void mask_unwanted(Tile& tile) {
     const int x = cell % kCellsAcross * kCellSide + kLaneX[pixel];
     const int y = cell / kCellsAcross * kCellSide + kLaneY[pixel];
     if (x >= w.x0 && x < w.x1 && y >= w.y0 && y < w.y1) continue;
-    tile.covered[cell] |= 1u << pixel;
     tile.inverse_depth[i] = __builtin_inff();
   }
 }
