@@ -1,6 +1,7 @@
 // The table of entry points that every instruction set exports, and what they take.
 #pragma once
 #include "kdtree/kdtree.h"
+#include "kernels/layout.h"
 #include "kernels/packet.h"
 #include "kernels/points.h"
 #include "math/pinhole.h"
@@ -34,6 +35,11 @@ struct Kernels {
   uint64_t (*surface_points)(const KdTriangle* triangles, const RayPacket& rays, const HitPacket& hits,
                              const OffsetRule& offset, PointPacket& out);
 
+  // Where the live rays met their triangles, and the surface there without its texture: sets all but the
+  // points' keys.
+  void (*hit_surfaces)(const SurfaceView& scene, const RayPacket& rays, const HitPacket& hits,
+                       const OffsetRule& offset, SurfacePacket& out);
+
   // One ray from every live point, mirrored about the geometric normal; sets rays.live.
   void (*mirror_rays)(const PointPacket& points, RayPacket& rays);
 
@@ -66,6 +72,18 @@ struct Kernels {
   // without a triangle get the Hit of nothing.
   void (*intersect_visible)(const Pinhole& camera, const KdTriangle* triangles, int x, int y,
                             const uint32_t* numbers, HitPacket& hits);
+
+  // The same and the surfaces there, as hit_surfaces gives them. Pixels without a triangle are not live, and
+  // their t, u and v mean nothing.
+  void (*visible_surfaces)(const SurfaceView& scene, const Pinhole& camera, int x, int y,
+                           const uint32_t* numbers, const OffsetRule& offset, HitPacket& hits,
+                           SurfacePacket& out);
+
+  // The same points, written as layout.h says.
+  void (*write_full)(const SurfaceView& scene, const Pinhole& camera, int x, int y, const uint32_t* numbers,
+                     FullBlock& out);
+  void (*write_min)(const SurfaceView& scene, const Pinhole& camera, int x, int y, const uint32_t* numbers,
+                    MinBlock& out);
 
   // trace_closest, closest_blocks, trace_shadows and ambient_blocks, with the same answers, which also add
   // up what they do.

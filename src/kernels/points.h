@@ -1,5 +1,6 @@
 // What the secondary passes need to know of 64 surface points.
 #pragma once
+#include "kdtree/kdtree.h"
 #include "kernels/packet.h"
 #include "math/random.h"
 #include "vitral/counts.h"
@@ -14,6 +15,31 @@ struct alignas(64) PointPacket {
   float offset[kPacketSize];                                // secondary rays start this far off
   uint32_t key[kPacketSize];                                // seeds the point's random numbers
   uint64_t live;
+};
+
+// What light needs to know of 64 surface points. The lanes that are not live mean nothing.
+struct alignas(64) SurfacePacket {
+  PointPacket points;
+  float r[kPacketSize], g[kPacketSize], b[kPacketSize];  // albedo: Kd times map_Kd
+  float t[kPacketSize];                                  // of the ray that came here
+  uint32_t material[kPacketSize];
+  uint32_t triangle[kPacketSize];
+  uint64_t back = 0;  // lanes that see the back of their triangle
+};
+
+// A material's colour without its texture.
+struct FlatColor {
+  Vec3 diffuse;    // Kd
+  uint32_t rgba8;  // Kd in 255ths, linear, red in the lowest byte; alpha 255
+};
+
+// The scene's triangles as surfaces, by triangle number: pointers only.
+struct SurfaceView {
+  const KdTriangle* triangles;
+  const uint32_t* normal_indices;  // three a triangle, kNoIndex: flat corner; null: the mesh has no normals
+  const Vec3* normals;
+  const uint32_t* materials;  // of each triangle
+  const FlatColor* colors;    // of each material
 };
 
 // A secondary ray starts this far off the surface along the geometric normal. A position is computed

@@ -1,79 +1,134 @@
-// Where rays met their triangles: the points at which secondary rays start.
-#include "kernels/points.h"
+// Where rays met their triangles: the points at which secondary rays start, and what light needs to know
+// of them.
+#include "kernels/facet.h"
+#include "kernels/lanes.h"
 #include "kernels/tables.h"
-#include "math/scalar.h"
-#include "simd/simd.h"
 
 namespace vitral {
 namespace VITRAL_ISA {
 namespace {
 
-// The corners of every lane's triangle, component by component.
-struct alignas(64) Corners {
-  float x[3][kPacketSize], y[3][kPacketSize], z[3][kPacketSize];
-};
-
-void gather(const KdTriangle* triangles, const uint32_t* numbers, uint64_t lanes, Corners& out) {
-  for (int lane = 0; lane < kPacketSize; ++lane) {
-    // Lanes that hit nothing look at some triangle: the numbers stay harmless.
-    const KdTriangle& t = triangles[lanes >> lane & 1 ? numbers[lane] : 0];
-    for (int k = 0; k < 3; ++k) {
-      out.x[k][lane] = t.corner[k][0], out.y[k][lane] = t.corner[k][1], out.z[k][lane] = t.corner[k][2];
-    }
-  }
-}
-
-inline Vec3T<Float> corner(const Corners& c, int k, int g) {
-  return {load(c.x[k] + g), load(c.y[k] + g), load(c.z[k] + g)};
-}
-inline Vec3T<Double> widen(const Vec3T<Float>& v) {
-  using vitral::widen;
-  return {widen(v.x), widen(v.y), widen(v.z)};
-}
-inline Float largest(const Vec3T<Float>& v) {
-  return greatest(absolute(v.x), greatest(absolute(v.y), absolute(v.z)));
-}
 inline void store3(float* x, float* y, float* z, int g, const Vec3T<Float>& v, Mask keep, float other) {
   store(x + g, select(keep, v.x, Float(0.0f)));
   store(y + g, select(keep, v.y, Float(0.0f)));
   store(z + g, select(keep, v.z, Float(other)));
 }
 
-}  // namespace
+void store_nothing(int g, PointPacket& out) {
+  const Mask none = mask_of_bits(0);
+  const Vec3T<Float> any_vector = broadcast(Vec3{0, 0, 0});
+  store3(out.px, out.py, out.pz, g, any_vector, none, 0);
+  store3(out.gx, out.gy, out.gz, g, any_vector, none, 1);
+  store3(out.nx, out.ny, out.nz, g, any_vector, none, 1);
+  store3(out.vx, out.vy, out.vz, g, any_vector, none, 1);
+  store(out.offset + g, Float(0.0f));
+}
 
-// The geometric normal is computed in double, so that tiny triangles have one, too.
-uint64_t surface_points(const KdTriangle* triangles, const RayPacket& rays, const HitPacket& hits,
-                        const OffsetRule& offset, PointPacket& out) {
+// Sets the register's points but their keys; returns the lanes that see the back.
+[[gnu::always_inline]] inline uint64_t store_points(const Facet<Float, Mask>& f, Float u, Float v,
+                                                    const Vec3T<Float>& direction, Mask live,
+                                                    const OffsetRule& offset, int g, PointPacket& out) {
+  const Vec3T<Float> viewer = -normalize(direction);
+  const Mask away = looks_away(f.normal, viewer);
+  const Vec3T<Float> normal = flip_where(away, f.normal);
+  const Vec3T<Float> shading = interpolated_normal(f.corner_normal[0], f.corner_normal[1],
+                                                   f.corner_normal[2], u, v, normal, f.smooth);
+  store3(out.px, out.py, out.pz, g, position_at(f, u, v), live, 0);
+  store3(out.gx, out.gy, out.gz, g, normal, live, 1);
+  store3(out.nx, out.ny, out.nz, g, shading, live, 1);
+  store3(out.vx, out.vy, out.vz, g, viewer, live, 1);
+  const Float own = offset.fixed > 0 ? Float(offset.fixed) : ray_offset(f.magnitude);
+  store(out.offset + g, select(live, own, Float(0.0f)));
+  return static_cast<uint64_t>(bits(both(away, live))) << g;
+}
+
+// The rest of a surface, without its texture. `number` is the triangle of all lanes, or kNoTriangle.
+void store_colors(const SurfaceView& scene, const uint32_t* numbers, uint32_t number, uint32_t live, int g,
+                  SurfacePacket& out) {
+  store(out.triangle + g, load(numbers));
+  if (number != kNoTriangle) {
+    const uint32_t material = scene.materials[number];
+    const Vec3& color = scene.colors[material].diffuse;
+    store(out.material + g, Uint(material));
+    vitral::VITRAL_ISA::store3(out.r, out.g, out.b, g, broadcast(color));
+    return;
+  }
+  for (uint32_t left = live; left != 0; left &= left - 1) {
+    const int lane = __builtin_ctz(left);
+    const uint32_t material = scene.materials[numbers[lane]];
+    const Vec3& color = scene.colors[material].diffuse;
+    out.material[g + lane] = material;
+    out.r[g + lane] = color.x, out.g[g + lane] = color.y, out.b[g + lane] = color.z;
+  }
+}
+
+// Calls body(g, met, facet, number) for the registers of hits that any live ray has.
+template <class Body>
+[[gnu::always_inline]] inline void for_each_hit(const SurfaceView& scene, const RayPacket& rays,
+                                                const HitPacket& hits, PointPacket& out, const Body& body) {
+  OneFacet one;
   out.live = 0;
   for (int g = 0; g < kPacketSize; g += kLanes) {
     const Mask met = both(invert(load(hits.triangle + g) == Uint(kNoTriangle)), mask_of_bits(rays.live >> g));
     out.live |= static_cast<uint64_t>(bits(met)) << g;
+    if (!any(met)) {
+      store_nothing(g, out);
+      continue;
+    }
+    with_facets(scene, Vec3{0, 0, 0}, hits.triangle + g, met, one,
+                [&](const Facet<Float, Mask>& facet, uint32_t number) { body(g, met, facet, number); });
   }
-  if (out.live == 0) return 0;
-  Corners corners;
-  gather(triangles, hits.triangle, out.live, corners);
+}
+
+}  // namespace
+
+uint64_t surface_points(const KdTriangle* triangles, const RayPacket& rays, const HitPacket& hits,
+                        const OffsetRule& offset, PointPacket& out) {
+  const SurfaceView scene{triangles, nullptr, nullptr, nullptr, nullptr};
   uint64_t back = 0;
-  for (int g = 0; g < kPacketSize; g += kLanes) {
-    const Mask live = mask_of_bits(out.live >> g);
-    const Vec3T<Float> a = corner(corners, 0, g), b = corner(corners, 1, g), c = corner(corners, 2, g);
-    const Vec3T<Float> position = (a + (b - a) * load(hits.u + g)) + (c - a) * load(hits.v + g);
-    const Vec3T<Float> direction{load(rays.dx + g), load(rays.dy + g), load(rays.dz + g)};
-    const Vec3T<Float> viewer = -normalize(direction);
-    const Vec3T<Double> precise = normalize(cross(widen(b) - widen(a), widen(c) - widen(a)));
-    Vec3T<Float> normal{narrow(precise.x), narrow(precise.y), narrow(precise.z)};
-    const Mask away = dot(normal, viewer) < Float(0.0f);
-    back |= static_cast<uint64_t>(bits(both(away, live))) << g;
-    normal = {select(away, -normal.x, normal.x), select(away, -normal.y, normal.y),
-              select(away, -normal.z, normal.z)};
-    store3(out.px, out.py, out.pz, g, position, live, 0);
-    store3(out.gx, out.gy, out.gz, g, normal, live, 1);
-    store3(out.nx, out.ny, out.nz, g, normal, live, 1);
-    store3(out.vx, out.vy, out.vz, g, viewer, live, 1);
-    const Float magnitude = greatest(largest(a), greatest(largest(b), largest(c)));
-    const Float own = offset.fixed > 0 ? Float(offset.fixed) : ray_offset(magnitude);
-    store(out.offset + g, select(live, own, Float(0.0f)));
-  }
+  for_each_hit(scene, rays, hits, out, [&](int g, Mask met, const Facet<Float, Mask>& facet, uint32_t) {
+    back |= store_points(facet, load(hits.u + g), load(hits.v + g), load3(rays.dx, rays.dy, rays.dz, g), met,
+                         offset, g, out);
+  });
   return back;
+}
+
+void hit_surfaces(const SurfaceView& scene, const RayPacket& rays, const HitPacket& hits,
+                  const OffsetRule& offset, SurfacePacket& out) {
+  out.back = 0;
+  for_each_hit(scene, rays, hits, out.points,
+               [&](int g, Mask met, const Facet<Float, Mask>& facet, uint32_t number) {
+                 out.back |= store_points(facet, load(hits.u + g), load(hits.v + g),
+                                          load3(rays.dx, rays.dy, rays.dz, g), met, offset, g, out.points);
+                 store(out.t + g, load(hits.t + g));
+                 store_colors(scene, hits.triangle + g, number, bits(met), g, out);
+               });
+}
+
+void visible_surfaces(const SurfaceView& scene, const Pinhole& camera, int x, int y, const uint32_t* numbers,
+                      const OffsetRule& offset, HitPacket& hits, SurfacePacket& out) {
+  OneFacet one;
+  out.back = 0;
+  out.points.live = 0;
+  for (int g = 0; g < kPacketSize; g += kLanes) {
+    const Uint number = load(numbers + g);
+    const Mask seen = invert(number == Uint(kNoTriangle));
+    store(hits.triangle + g, number);
+    out.points.live |= static_cast<uint64_t>(bits(seen)) << g;
+    if (!any(seen)) {
+      store_nothing(g, out.points);
+      continue;
+    }
+    const Vec3T<Float> direction = pixel_directions(camera, x, y, g);
+    with_facets(scene, camera.origin, numbers + g, seen, one,
+                [&](const Facet<Float, Mask>& facet, uint32_t same) {
+                  const auto hit = visible_hit(facet, direction, camera, seen);
+                  store(hits.t + g, hit.t), store(hits.u + g, hit.u), store(hits.v + g, hit.v);
+                  store(out.t + g, hit.t);
+                  out.back |= store_points(facet, hit.u, hit.v, direction, seen, offset, g, out.points);
+                  store_colors(scene, numbers + g, same, bits(seen), g, out);
+                });
+  }
 }
 
 }  // namespace VITRAL_ISA

@@ -12,6 +12,8 @@ void closest_blocks(const KdView& tree, const RayPacket* rays, int count, Shortc
 uint64_t trace_any(const KdView& tree, const RayPacket& rays, GlassRule glass);
 uint64_t surface_points(const KdTriangle* triangles, const RayPacket& rays, const HitPacket& hits,
                         const OffsetRule& offset, PointPacket& out);
+void hit_surfaces(const SurfaceView& scene, const RayPacket& rays, const HitPacket& hits,
+                  const OffsetRule& offset, SurfacePacket& out);
 void mirror_rays(const PointPacket& points, RayPacket& rays);
 void shadow_rays(const Light& light, const PointPacket& points, RayPacket& rays);
 void trace_shadows(const KdView& tree, const Light& light, GlassRule glass, const PointPacket* const* points,
@@ -32,6 +34,12 @@ void setup_triangles(const SetupInput& in, uint32_t begin, uint32_t end, SetupOu
 void fill_tile(const RasterView& view, int tile_x, int tile_y, TileVisibility& out);
 void intersect_visible(const Pinhole& camera, const KdTriangle* triangles, int x, int y,
                        const uint32_t* numbers, HitPacket& hits);
+void visible_surfaces(const SurfaceView& scene, const Pinhole& camera, int x, int y, const uint32_t* numbers,
+                      const OffsetRule& offset, HitPacket& hits, SurfacePacket& out);
+void write_full(const SurfaceView& scene, const Pinhole& camera, int x, int y, const uint32_t* numbers,
+                FullBlock& out);
+void write_min(const SurfaceView& scene, const Pinhole& camera, int x, int y, const uint32_t* numbers,
+               MinBlock& out);
 
 }  // namespace VITRAL_ISA
 }  // namespace vitral

@@ -10,16 +10,18 @@
 
 namespace vitral {
 
-// Corners relative to the camera and, like the direction, permuted; near and far as in Pinhole.
-template <class F>
+// Corners relative to the camera and, like the direction, permuted; near and far as in Pinhole. Where it
+// is not `wanted` the answer means nothing.
+template <class F, class M>
 static inline auto visible_point(const Vec3T<F>& a, const Vec3T<F>& b, const Vec3T<F>& c,
-                                 const Vec3T<F>& permuted_direction, const F& near, const F& far) {
+                                 const Vec3T<F>& permuted_direction, const F& near, const F& far,
+                                 const M& wanted) {
   const Shear<F> shear = make_shear(permuted_direction);
   const Vec3T<F> pa = project(a, shear), pb = project(b, shear), pc = project(c, shear);
   const auto edges = edge_values(pa, pb, pc);
   auto hit = surround_origin(pa, pb, pc, shear, edges);
   hit.hit = both(hit.hit, hit.t > F(0.0f));
-  if (any(invert(hit.hit))) {
+  if (any(both(wanted, invert(hit.hit)))) {
     const auto nearby = nearby_point(pa, pb, pc, shear, edges, near, far);
     hit.t = select(hit.hit, hit.t, nearby.t);
     hit.u = select(hit.hit, hit.u, nearby.u);
@@ -39,7 +41,7 @@ static inline TriangleHit<float, bool> visible_point(const Pinhole& camera, cons
   return visible_point(permute(corner_from(camera.origin, triangle, 0), z),
                        permute(corner_from(camera.origin, triangle, 1), z),
                        permute(corner_from(camera.origin, triangle, 2), z), permute(direction, z),
-                       camera.near, camera.far);
+                       camera.near, camera.far, true);
 }
 
 }  // namespace vitral

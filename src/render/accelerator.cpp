@@ -15,7 +15,20 @@ bool cut_out_is_there(const void* scene_pointer, uint32_t triangle, float u, flo
   return sample_alpha(map, texcoord_at(scene.mesh, triangle, u, v)) >= 0.5f;
 }
 
+uint32_t in_255ths(float x) {
+  return static_cast<uint32_t>((x > 0 ? least(x, 1.0f) : 0.0f) * 255 + 0.5f);
+}
+
 void set_views(const Scene& scene, Accelerator& a) {
+  const Mesh& mesh = scene.mesh;
+  a.colors.clear();
+  for (const Material& m : scene.materials) {
+    const Vec3& kd = m.diffuse;
+    a.colors.push_back({kd, in_255ths(kd.x) | in_255ths(kd.y) << 8 | in_255ths(kd.z) << 16 | 255u << 24});
+  }
+  a.surfaces = {a.triangles.data(),
+                mesh.triangle_normals.empty() ? nullptr : mesh.triangle_normals.front().data(),
+                mesh.normals.data(), mesh.triangle_material.data(), a.colors.data()};
   const CutOuts cut_outs = make_cut_outs(scene);
   a.view = make_view(a.all, a.triangles, cut_outs);
   a.glass_view = make_view(a.glass, a.triangles, cut_outs);

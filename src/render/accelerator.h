@@ -2,6 +2,7 @@
 #pragma once
 #include "kdtree/build.h"
 #include "kdtree/kdtree.h"
+#include "kernels/points.h"
 #include "parallel/parallel_for.h"
 #include "vitral/render.h"
 #include "vitral/scene.h"
@@ -17,6 +18,8 @@ struct Accelerator {
   KdTree glass;  // only those of glass, for the tint of shadows; empty without glass
   KdView view, glass_view;
   bool has_glass = false, has_cut_outs = false;
+  std::vector<FlatColor> colors;  // of the materials
+  SurfaceView surfaces;
 
   Accelerator() = default;
   Accelerator(const Accelerator&) = delete;

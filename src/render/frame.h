@@ -50,20 +50,23 @@ struct PassTally {
   std::array<TraversalCounts, kPasses> traversal{};  // but rays_culled
 };
 
+using Clock = std::chrono::steady_clock;
+inline double seconds_between(Clock::time_point start, Clock::time_point end) {
+  return std::chrono::duration<double>(end - start).count();
+}
+
 // Adds the time from its making to its end to a pass.
 class PassTimer {
  public:
   PassTimer(PassTally& tally, Pass pass)
-      : seconds_(tally.seconds[static_cast<size_t>(pass)]), start_(std::chrono::steady_clock::now()) {}
-  ~PassTimer() {
-    seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  }
+      : seconds_(tally.seconds[static_cast<size_t>(pass)]), start_(Clock::now()) {}
+  ~PassTimer() { seconds_ += seconds_between(start_, Clock::now()); }
   PassTimer(const PassTimer&) = delete;
   PassTimer& operator=(const PassTimer&) = delete;
 
  private:
   double& seconds_;
-  std::chrono::steady_clock::time_point start_;
+  Clock::time_point start_;
 };
 
 inline void count_rays(PassTally& tally, Pass pass, uint64_t lanes) {
@@ -101,24 +104,32 @@ void run_ambient(const FrameContext& frame, const PointPacket* const* points, in
                  const AmbientSettings& settings, PassTally& tally, FreeRays* out, LaneWork* work);
 
 // primary.cpp: the scene's triangles on the screen, in bins. Throws Interrupted.
+struct SetupTimes {
+  double transform = 0, setup = 0, bin = 0;  // seconds by the clock, on all threads
+};
 RasterView setup_raster(const FrameContext& frame, const Rectangle& crop, ThreadPool& pool,
-                        const Control& control, RasterFrame& raster);
+                        const Control& control, RasterFrame& raster, SetupTimes& times);
 
 // The blocks of a tile so that every four and every sixteen of them make a square.
 inline constexpr int kBlocksInOrder[kTileBlocks] = {0, 1, 4, 5, 2, 3, 6, 7, 8, 9, 12, 13, 10, 11, 14, 15};
 
-// What the camera sees in a tile, the i-th block of kBlocksInOrder in entry i.
+// What the camera sees in a tile: the rasterizer's triangles; or the tracer's rays and hits, the i-th block of
+// kBlocksInOrder in entry i.
 struct TileHits {
   TileVisibility visibility;
-  std::array<RayPacket, kTileBlocks> rays;  // none live: nothing is seen in that block
+  std::array<RayPacket, kTileBlocks> rays;
   std::array<HitPacket, kTileBlocks> hits;
   std::array<LaneWork, kTileBlocks> work;  // of the tracer; only with Count::pixels
 };
 
-// primary.cpp: the rays through the centres of a tile's pixels and their hits, rasterized or traced. `lanes`
-// are the pixels wanted, by block in kBlocksInOrder.
+// primary.cpp: finds it, for the pixels in `lanes`, which has an entry for each of kBlocksInOrder.
 void find_primary_hits(const FrameContext& frame, int tile_x, int tile_y, const uint64_t* lanes,
                        PassTally& tally, TileHits& out);
+
+// primary.cpp: the surfaces of the i-th block of kBlocksInOrder, whose corner is (x, y). False where nothing
+// is seen: then `out` is left as it is, but for points.live, which is 0.
+bool see_surfaces(const FrameContext& frame, const TileHits& tile, size_t i, int x, int y,
+                  SurfacePacket& out);
 
 // resolve.cpp: encodes linear colours, those that are the same as the one before only once; counts and
 // paints red those that are not finite.

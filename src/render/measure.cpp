@@ -22,13 +22,13 @@ void see_tile(const Picture& p, Block* blocks, Detail detail, Scratch& s) {
   find_primary_hits(frame, blocks->x, blocks->y, lanes, s.tally, seen);
   for (size_t i = 0; i < kTileBlocks; ++i) {
     Block& b = blocks[kBlocksInOrder[i]];
-    b.surfaces.points.live = 0;
-    if (seen.rays[i].live == 0) continue;
-    if (detail == Detail::points) {
+    if (detail == Detail::points && !frame.raster) {
+      b.surfaces.points.live = 0;
+      if (seen.rays[i].live == 0) continue;
       frame.kernels.surface_points(frame.accelerator.triangles.data(), seen.rays[i], seen.hits[i],
                                    frame.offset, b.surfaces.points);
     } else {
-      make_surfaces(frame, seen.rays[i], seen.hits[i], b.surfaces);
+      see_surfaces(frame, seen, i, b.x, b.y, b.surfaces);
     }
   }
 }
@@ -49,7 +49,8 @@ struct Screen {
 };
 void set_up_screen(const Picture& p, FrameContext& frame, Screen& screen) {
   if (frame.settings.primary != Primary::raster) return;
-  screen.view = setup_raster(frame, p.crop, p.pool, p.control, screen.raster);
+  SetupTimes times;
+  screen.view = setup_raster(frame, p.crop, p.pool, p.control, screen.raster, times);
   frame.raster = &screen.view;
 }
 

@@ -73,7 +73,8 @@ Frame render_frame(const Scene& scene, const Accelerator& accelerator, const Cam
   RasterView raster_view{};
   if (settings.primary == Primary::raster) {
     const PassTimer timer(setup, Pass::raster);
-    raster_view = setup_raster(frame, crop, pool, control, raster);
+    SetupTimes times;
+    raster_view = setup_raster(frame, crop, pool, control, raster, times);
     frame.raster = &raster_view;
   }
 

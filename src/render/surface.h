@@ -8,17 +8,12 @@ namespace vitral {
 
 struct FrameContext;
 
-struct alignas(64) SurfacePacket {
-  PointPacket points;
-  float r[kPacketSize], g[kPacketSize], b[kPacketSize];  // albedo: Kd times map_Kd
-  float t[kPacketSize];                                  // of the ray that came here
-  uint32_t material[kPacketSize];
-  uint32_t triangle[kPacketSize];
-  uint64_t back = 0;  // lanes that see the back of their triangle
-};
-
 // Fills the live rays' lanes that hit something and sets points.live to them; keys are the caller's.
 void make_surfaces(const FrameContext& frame, const RayPacket& rays, const HitPacket& hits,
                    SurfacePacket& out);
+
+// The same of what the pixels of the block at (x, y) see, which the rasterizer found.
+void make_visible_surfaces(const FrameContext& frame, int x, int y, const uint32_t* triangles,
+                           SurfacePacket& out);
 
 }  // namespace vitral

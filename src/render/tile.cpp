@@ -107,14 +107,12 @@ void render_tile(const FrameContext& frame, const Rectangle& crop, int tile_x, i
   int corner_x[kTileBlocks], corner_y[kTileBlocks];
   int count = 0;
   for (size_t i = 0; i < kTileBlocks; ++i) {
-    if (tile.rays[i].live == 0) continue;
     const PassTimer timer(worker.tally, Pass::shade);
     const int block = kBlocksInOrder[i];
     const int x = tile_x + block % kTileBlocksAcross * kBlockSide,
               y = tile_y + block / kTileBlocksAcross * kBlockSide;
     SurfacePacket& surfaces = worker.surfaces[static_cast<size_t>(count)];
-    make_surfaces(frame, tile.rays[i], tile.hits[i], surfaces);
-    if (surfaces.points.live == 0) continue;
+    if (!see_surfaces(frame, tile, i, x, y, surfaces)) continue;
     for (int lane = 0; lane < kPacketSize; ++lane)
       surfaces.points.key[lane] =
           pixel_key(x + lane % kBlockSide, y + lane / kBlockSide, frame.settings.seed);

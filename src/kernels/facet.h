@@ -1,0 +1,155 @@
+// The triangles that a register of points lies on, and what those points are like.
+//
+// Neighbouring pixels mostly see the same triangle: what depends on it alone is then computed once, as plain
+// numbers, and kept for the next register. Otherwise every lane's triangle is gathered and all is computed
+// lane by lane. Both ways are the same roundings in the same order.
+#pragma once
+#include "kernels/points.h"
+#include "kernels/shading.h"
+#include "kernels/visible.h"
+#include "simd/gather.h"
+#include "simd/simd.h"
+
+namespace vitral {
+namespace VITRAL_ISA {
+
+inline constexpr uint32_t kAllLanes = static_cast<uint32_t>((uint64_t{1} << kLanes) - 1);
+
+// The last triangle that a whole register saw.
+struct OneFacet {
+  uint32_t triangle = kNoTriangle;
+  Facet<float, bool> facet{};
+};
+
+static inline Vec3T<Float> broadcast(const Vec3& v) {
+  return {Float(v.x), Float(v.y), Float(v.z)};
+}
+
+static inline Vec3 corner_of(const KdTriangle& t, int k) {
+  return {t.corner[k][0], t.corner[k][1], t.corner[k][2]};
+}
+
+static inline bool is_flat(const SurfaceView& scene, uint32_t triangle) {
+  if (scene.normal_indices == nullptr) return true;
+  const uint32_t* n = scene.normal_indices + size_t{3} * triangle;
+  return n[0] == kNoIndex || n[1] == kNoIndex || n[2] == kNoIndex;
+}
+
+static inline void make_facet(const SurfaceView& scene, uint32_t triangle, const Vec3& eye, OneFacet& out) {
+  if (out.triangle == triangle) return;
+  out.triangle = triangle;
+  Facet<float, bool>& f = out.facet;
+  const KdTriangle& t = scene.triangles[triangle];
+  set_corners(corner_of(t, 0), corner_of(t, 1), corner_of(t, 2), eye, f);
+  f.smooth = !is_flat(scene, triangle);
+  for (int k = 0; k < 3; ++k) {
+    f.corner_normal[k] =
+        f.smooth ? scene.normals[scene.normal_indices[size_t{3} * triangle + static_cast<size_t>(k)]]
+                 : Vec3{0, 0, 1};
+  }
+}
+
+[[gnu::always_inline]] static inline Facet<Float, Mask> broadcast(const Facet<float, bool>& f) {
+  return {broadcast(f.a),
+          broadcast(f.ab),
+          broadcast(f.ac),
+          {broadcast(f.from_eye[0]), broadcast(f.from_eye[1]), broadcast(f.from_eye[2])},
+          broadcast(f.normal),
+          Float(f.magnitude),
+          {broadcast(f.corner_normal[0]), broadcast(f.corner_normal[1]), broadcast(f.corner_normal[2])},
+          mask_of_bits(f.smooth ? kAllLanes : 0)};
+}
+
+// `numbers` has a triangle in every lane.
+[[gnu::always_inline]] static inline Facet<Float, Mask> gather_facet(const SurfaceView& scene,
+                                                                     const uint32_t* numbers,
+                                                                     const Vec3& eye) {
+  constexpr size_t stride = sizeof(KdTriangle) / sizeof(float);
+  Facet<Float, Mask> f;
+  Vec3T<Float> corner[3];
+  for (int k = 0; k < 3; ++k) {
+    gather3(scene.triangles->corner[k], stride, numbers, corner[k].x, corner[k].y, corner[k].z);
+  }
+  set_corners(corner[0], corner[1], corner[2], broadcast(eye), f);
+  uint32_t smooth = 0;
+  uint32_t index[3][kLanes] = {};
+  if (scene.normal_indices != nullptr) {
+    for (int i = 0; i < kLanes; ++i) {
+      if (is_flat(scene, numbers[i])) continue;
+      smooth |= 1u << i;
+      for (int k = 0; k < 3; ++k)
+        index[k][i] = scene.normal_indices[size_t{3} * numbers[i] + static_cast<size_t>(k)];
+    }
+  }
+  f.smooth = mask_of_bits(smooth);
+  for (int k = 0; k < 3; ++k) {
+    f.corner_normal[k] = broadcast(Vec3{0, 0, 1});
+    if (smooth != 0)
+      gather3(&scene.normals->x, 3, index[k], f.corner_normal[k].x, f.corner_normal[k].y,
+              f.corner_normal[k].z);
+  }
+  return f;
+}
+
+// Calls body(facet, number) for the triangles of a register of points, at least one of which is `seen`. The
+// lanes that are not get another one's triangle. `number` is the triangle of all lanes, or kNoTriangle.
+template <class Body>
+[[gnu::always_inline]] static inline void with_facets(const SurfaceView& scene, const Vec3& eye,
+                                                      const uint32_t* numbers, Mask seen, OneFacet& one,
+                                                      const Body& body) {
+  const uint32_t first = numbers[__builtin_ctz(bits(seen))];
+  const Uint number = select(seen, load(numbers), Uint(first));
+  if (bits(number == Uint(first)) == kAllLanes) {
+    make_facet(scene, first, eye, one);
+    body(broadcast(one.facet), first);
+  } else {
+    alignas(64) uint32_t valid[kLanes];
+    store(valid, number);
+    body(gather_facet(scene, valid, eye), kNoTriangle);
+  }
+}
+
+// Exactly whether the front looks away from a viewer who sees the point along `direction`; `viewer` is the
+// unit vector that way, rounded.
+static inline Mask looks_away(const Vec3T<Float>& normal, const Vec3T<Float>& viewer) {
+  return dot(normal, viewer) < Float(0.0f);
+}
+
+// The same, without the viewer unless it matters: both dot products are off by less than 2^-20 of the
+// direction's length, so that far from 0 their signs are opposite.
+static inline Mask looks_away_along(const Vec3T<Float>& normal, const Vec3T<Float>& direction, Mask wanted) {
+  const Float along = dot(normal, direction);
+  const Float margin =
+      ((absolute(direction.x) + absolute(direction.y)) + absolute(direction.z)) * Float(1e-5f);
+  if (bits(either(absolute(along) > margin, invert(wanted))) == kAllLanes) return along > Float(0.0f);
+  return looks_away(normal, -normalize(direction));
+}
+
+static inline Vec3T<Float> position_at(const Facet<Float, Mask>& f, Float u, Float v) {
+  return (f.a + f.ab * u) + f.ac * v;
+}
+
+// The pixels of a register within the block at (x, y), g their first lane.
+static inline Vec3T<Float> pixel_directions(const Pinhole& camera, int x, int y, int g) {
+  const Uint pixel = lane_numbers() + Uint(static_cast<uint32_t>(g));
+  const Float px = to_float(Uint(static_cast<uint32_t>(x)) + (pixel & Uint(7u)));
+  const Float py = to_float(Uint(static_cast<uint32_t>(y)) + (pixel >> 3));
+  return primary_direction(camera, px, py);
+}
+
+// Where the camera's rays meet the facets (visible.h). Nearly always all lanes have one dominant axis.
+[[gnu::always_inline]] static inline auto visible_hit(const Facet<Float, Mask>& f, const Vec3T<Float>& d,
+                                                      const Pinhole& camera, Mask seen) {
+  const Float x = absolute(d.x), y = absolute(d.y), z = absolute(d.z);
+  const Mask x_over_y = x > y;
+  const Mask along_x = both(x_over_y, x > z), along_y = both(invert(x_over_y), y > z);
+  Vec3T<Float> v[4] = {f.from_eye[0], f.from_eye[1], f.from_eye[2], d};
+  if (any(either(along_x, along_y))) {
+    for (Vec3T<Float>& each : v)
+      each = select3(along_x, permute(each, 0), select3(along_y, permute(each, 1), each));
+  }
+  return visible_point(v[0], v[1], v[2], v[3], Float(camera.near), Float(camera.far), seen);
+}
+
+}  // namespace VITRAL_ISA
+}  // namespace vitral
