@@ -14,18 +14,25 @@ namespace {
 constexpr double kEnoughSeconds = 4;
 
 void check_options(const Options& o) {
+  if (o.layout && o.primary == Primary::trace)
+    throw UsageError("--layout is what the rasterizer writes: it goes without --primary trace");
   if (!o.report) return;
-  for (const auto& [given, name] : {std::pair{o.json, "--json"}, std::pair{o.anchor, "--anchor"},
-                                    std::pair{o.effects.has_value(), "--effects"}}) {
+  for (const auto& [given, name] :
+       {std::pair{o.json, "--json"}, std::pair{o.anchor, "--anchor"},
+        std::pair{o.layout.has_value(), "--layout"}, std::pair{o.effects.has_value(), "--effects"}}) {
     if (given)
       throw UsageError(std::string("--report chooses effects and prints tables: it goes without ") + name);
   }
 }
 
+Layout layout_of(const Options& o) {
+  return o.layout.value_or(Layout::full);
+}
+
 // The passes keep what the camera sees, which is many times the picture.
-void check_memory(const Job& job) {
+void check_memory(const Job& job, Layout layout) {
   const Settings& settings = job.pipeline.settings;
-  const size_t needed = frame_bytes(settings) + measurement_bytes(settings), limit = memory_limit();
+  const size_t needed = frame_bytes(settings) + measurement_bytes(settings, layout), limit = memory_limit();
   if (needed <= limit) return;
   throw UsageError("timing the passes of " + std::to_string(settings.width) + "x" +
                    std::to_string(settings.height) + " pixels needs " + std::to_string(needed >> 20) +
@@ -52,8 +59,9 @@ std::string measure_report(const Job& job, const Options& options, Runs& runs, C
 
 std::string measure_each_pass(const Job& job, const Options& options, const Runs& runs, Control& control) {
   const RayRules rules = options.anchor ? RayRules::anchor : RayRules::scene;
-  Measurement m = measure_passes(job.project.scene, job.camera, job.pipeline.settings, rules, runs, control);
-  m.passes.insert(m.passes.begin(), {"load", {job.load_seconds * 1e3}, 0, 0});
+  Measurement m = measure_passes(job.project.scene, job.camera, job.pipeline.settings, rules,
+                                 layout_of(options), runs, control);
+  m.passes.insert(m.passes.begin(), {"load", {job.load_seconds * 1e3}, 0, 0, {}});
   return options.json ? passes_json(job, m) : passes_table(job, m, options.repeat);
 }
 
@@ -75,7 +83,7 @@ std::string measure(const Job& job, const Options& options) {
 int run_bench(const Options& options) {
   check_options(options);
   Job job = plan_job(options);
-  if (!options.report) check_memory(job);
+  if (!options.report) check_memory(job, layout_of(options));
   report_warnings(job.warnings, options);
   load_job(job, options);
   report_warnings(job.warnings, options);

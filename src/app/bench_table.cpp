@@ -12,9 +12,52 @@ double least(const std::vector<double>& values) {
   return *std::min_element(values.begin(), values.end());
 }
 
-double mrays_per_s(const PassTimes& pass) {
+struct Part {
+  const char* name;
+  double RasterTimes::*ms;
+};
+constexpr Part kParts[] = {{"transform", &RasterTimes::transform},
+                           {"setup", &RasterTimes::setup},
+                           {"bin", &RasterTimes::bin},
+                           {"fill", &RasterTimes::fill},
+                           {"attributes", &RasterTimes::attributes}};
+
+std::vector<double> times_of(const Part& part, const std::vector<RasterTimes>& runs) {
+  std::vector<double> ms;
+  for (const RasterTimes& run : runs) ms.push_back(run.*part.ms);
+  return ms;
+}
+
+// Millions a second of what a pass does `count` of.
+double millions_per_s(size_t count, const PassTimes& pass) {
   const double ms = median(pass.ms);
-  return ms > 0 ? static_cast<double>(pass.rays) / ms * 1e-3 : 0;
+  return ms > 0 ? static_cast<double>(count) / ms * 1e-3 : 0;
+}
+
+size_t pixels_of(const Settings& s) {
+  return s.crop.width == 0 ? static_cast<size_t>(s.width) * static_cast<size_t>(s.height)
+                           : static_cast<size_t>(s.crop.width) * static_cast<size_t>(s.crop.height);
+}
+
+void add_parts(JsonWriter& json, const Job& job, const PassTimes& pass) {
+  for (const Part& part : kParts)
+    json.add(std::string(part.name) + "_ms", median(times_of(part, pass.parts)));
+  json.add("mpixels_per_s", millions_per_s(pixels_of(job.pipeline.settings), pass))
+      .add("mtriangles_per_s", millions_per_s(job.project.scene.mesh.triangles.size(), pass));
+}
+
+std::string parts_table(const Job& job, const PassTimes& pass) {
+  char line[200];
+  std::snprintf(line, sizeof line, "%*.1f Mpixels/s, %.1f Mtriangles/s\n", 32,
+                millions_per_s(pixels_of(job.pipeline.settings), pass),
+                millions_per_s(job.project.scene.mesh.triangles.size(), pass));
+  std::string text = line;
+  for (const Part& part : kParts) {
+    const std::vector<double> ms = times_of(part, pass.parts);
+    std::snprintf(line, sizeof line, "  %-10s %12.2f %12.2f\n", part.name, median(ms), least(ms));
+    text += line;
+  }
+  return text;
 }
 
 }  // namespace
@@ -47,8 +90,9 @@ std::string passes_json(const Job& job, const Measurement& m) {
         .add("ms_median", median(pass.ms))
         .add("ms_min", least(pass.ms))
         .add("rays", pass.rays)
-        .add("mrays_per_s", mrays_per_s(pass));
+        .add("mrays_per_s", millions_per_s(pass.rays, pass));
     if (pass.bytes > 0) json.add("bytes", pass.bytes);
+    if (!pass.parts.empty()) add_parts(json, job, pass);
     json.end_object();
   }
   json.end_array()
@@ -73,10 +117,10 @@ std::string passes_table(const Job& job, const Measurement& m, int repeat) {
     text += line;
     if (pass.rays > 0) {
       std::snprintf(line, sizeof line, " %12llu %12.1f", static_cast<unsigned long long>(pass.rays),
-                    mrays_per_s(pass));
+                    millions_per_s(pass.rays, pass));
       text += line;
     }
-    text += '\n';
+    text += pass.parts.empty() ? "\n" : parts_table(job, pass);
   }
   std::snprintf(line, sizeof line,
                 "covered pixels %llu, shadowed %llu, reflected rays that met something %llu, mean ambient "

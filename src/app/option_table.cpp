@@ -229,6 +229,13 @@ constexpr OptionRow kTable[] = {
     {kWork, "--repeat", "", "R", kBench,
      "how often each pass is timed, after a run to warm up, 1 to 1000 (5)",
      [](O& o, const R& r, const S& v) { o.repeat = integer(r, v, 1, 1000); }},
+    {kWork, "--layout", "", "NAME", kBench,
+     "what the raster pass writes for each pixel: full (position, normal,\n"
+     "flat albedo, material, triangle, depth) or min (packed normal,\n"
+     "material, depth) (full)",
+     [](O& o, const R& r, const S& v) {
+       o.layout = one_of(r, v, {Layout::full, Layout::min});
+     }},
     {kWork, "--mirror-all", "", "", kBench, "every surface is a perfect mirror",
      [](O& o, const R&, const S&) { o.mirror_all = true; }},
     {kWork, "--anchor", "", "", kBench,
@@ -285,6 +292,10 @@ const char* name_of(Fresnel fresnel) {
 
 const char* name_of(Compositing compositing) {
   return compositing == Compositing::physical ? "physical" : "report";
+}
+
+const char* name_of(Layout layout) {
+  return layout == Layout::full ? "full" : "min";
 }
 
 const char* name_of(Primary primary) {

@@ -1,6 +1,7 @@
 // The command line, as one table: what the parser accepts, what `--help` prints and what a misspelt
 // option is compared with are the same list.
 #pragma once
+#include "render/measure.h"
 #include "vitral/error.h"
 #include "vitral/render.h"
 #include "vitral/scene.h"
@@ -42,9 +43,10 @@ struct Options {
 
   std::string stats;  // empty: none; "-": standard output
   int repeat = 5;
-  bool anchor = false;      // bench: another tracer's rays
-  bool mirror_all = false;  // bench: every surface a perfect mirror
-  bool report = false;      // bench: the tables of effects and of ambient samples
+  std::optional<Layout> layout;  // bench: what the raster pass writes
+  bool anchor = false;           // bench: another tracer's rays
+  bool mirror_all = false;       // bench: every surface a perfect mirror
+  bool report = false;           // bench: the tables of effects and of ambient samples
   bool json = false;
   bool quiet = false;
 };
@@ -65,5 +67,6 @@ const char* name_of(Isa isa);
 const char* name_of(Fresnel fresnel);
 const char* name_of(Compositing compositing);
 const char* name_of(Primary primary);
+const char* name_of(Layout layout);
 
 }  // namespace vitral

@@ -31,16 +31,16 @@ template <class Body>
       continue;
     }
     const Vec3T<Float> direction = pixel_directions(camera, x, y, g);
-    with_facets(scene, camera.origin, numbers + g, seen, one,
-                [&](const Facet<Float, Mask>& f, uint32_t number) {
-                  const auto hit = visible_hit(f, direction, camera, seen);
-                  const Vec3T<Float> geometric = flip_where(looks_away_along(f.normal, direction, seen), f.normal);
-                  const Vec3T<Float> normal =
-                      any(f.smooth) ? interpolated_normal(f.corner_normal[0], f.corner_normal[1],
-                                                          f.corner_normal[2], hit.u, hit.v, geometric, f.smooth)
-                                    : geometric;
-                  body(g, Seen{seen, hit.t, position_at(f, hit.u, hit.v), normal}, number);
-                });
+    with_facets(
+        scene, camera.origin, numbers + g, seen, one, [&](const Facet<Float, Mask>& f, uint32_t number) {
+          const auto hit = visible_hit(f, direction, camera, seen);
+          const Vec3T<Float> geometric = flip_where(looks_away_along(f.normal, direction, seen), f.normal);
+          const Vec3T<Float> normal =
+              any(f.smooth) ? interpolated_normal(f.corner_normal[0], f.corner_normal[1], f.corner_normal[2],
+                                                  hit.u, hit.v, geometric, f.smooth)
+                            : geometric;
+          body(g, Seen{seen, hit.t, position_at(f, hit.u, hit.v), normal}, number);
+        });
   }
 }
 

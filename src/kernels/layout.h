@@ -31,8 +31,8 @@ struct alignas(64) MinBlock {
 };
 static_assert(sizeof(MinBlock) == 10 * kPacketSize);
 
-inline constexpr uint32_t kNoMaterial = 0xffffffffu;     // FullBlock, where nothing is seen
-inline constexpr uint16_t kNoMinMaterial = 0xffffu;      // MinBlock
+inline constexpr uint32_t kNoMaterial = 0xffffffffu;  // FullBlock, where nothing is seen
+inline constexpr uint16_t kNoMinMaterial = 0xffffu;   // MinBlock
 inline constexpr uint32_t kMaxMinMaterials = 0xffffu;
 
 }  // namespace vitral

@@ -1,5 +1,5 @@
-// Unit vectors in 32 bits: the octahedron |x| + |y| + |z| = 1 unfolded to a square (Meyer, Suessmuth, Sussner,
-// Stamminger and Greiner, "On Floating-Point Normal Vectors", EGSR 2010).
+// Unit vectors in 32 bits: the octahedron |x| + |y| + |z| = 1 unfolded to a square (Meyer, Suessmuth,
+// Sussner, Stamminger and Greiner, "On Floating-Point Normal Vectors", EGSR 2010).
 #pragma once
 #include "math/scalar.h"
 #include "vitral/vec.h"

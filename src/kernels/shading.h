@@ -1,4 +1,5 @@
-// Triangles as surfaces and the normals of their points, written once for a number and for a register of them.
+// Triangles as surfaces and the normals of their points, written once for a number and for a register of
+// them.
 #pragma once
 #include "math/scalar.h"
 #include "vitral/vec.h"
@@ -40,12 +41,12 @@ static inline Vec3T<F> interpolated_normal(const Vec3T<F>& na, const Vec3T<F>& n
 // F and M: float and bool for one triangle, Float and Mask for one in each lane.
 template <class F, class M>
 struct Facet {
-  Vec3T<F> a, ab, ac;               // corner a, and from there to b and c
-  Vec3T<F> from_eye[3];             // from the camera to the corners
-  Vec3T<F> normal;                  // geometric, of the front
-  F magnitude;                      // of the largest coordinate
-  Vec3T<F> corner_normal[3];        // they mean nothing unless
-  M smooth;                         // the corners have normals
+  Vec3T<F> a, ab, ac;         // corner a, and from there to b and c
+  Vec3T<F> from_eye[3];       // from the camera to the corners
+  Vec3T<F> normal;            // geometric, of the front
+  F magnitude;                // of the largest coordinate
+  Vec3T<F> corner_normal[3];  // they mean nothing unless
+  M smooth;                   // the corners have normals
 };
 
 template <class F>

@@ -113,8 +113,8 @@ RasterView setup_raster(const FrameContext& frame, const Rectangle& crop, Thread
 // The blocks of a tile so that every four and every sixteen of them make a square.
 inline constexpr int kBlocksInOrder[kTileBlocks] = {0, 1, 4, 5, 2, 3, 6, 7, 8, 9, 12, 13, 10, 11, 14, 15};
 
-// What the camera sees in a tile: the rasterizer's triangles; or the tracer's rays and hits, the i-th block of
-// kBlocksInOrder in entry i.
+// What the camera sees in a tile: the rasterizer's triangles; or the tracer's rays and hits, the i-th block
+// of kBlocksInOrder in entry i.
 struct TileHits {
   TileVisibility visibility;
   std::array<RayPacket, kTileBlocks> rays;

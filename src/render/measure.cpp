@@ -1,6 +1,7 @@
 #include "render/measure.h"
 
 #include "math/random.h"
+#include "render/gbuffer.h"
 #include "render/measure_picture.h"
 #include "render/render.h"
 #include "vitral/box.h"
@@ -54,22 +55,37 @@ void set_up_screen(const Picture& p, FrameContext& frame, Screen& screen) {
   frame.raster = &screen.view;
 }
 
-PassTimes measure_primary(Picture& p, FrameContext& frame, RayRules rules, uint64_t& covered) {
+PassTimes measure_raster(Picture& p, const FrameContext& frame, Layout layout, uint64_t& covered) {
+  GBuffer target = make_gbuffer(frame, layout);
+  RasterFrame raster;
+  RasterTimes times;
+  PassTimes pass{"raster", {}, 0, 0, {}};
+  pass.ms = time_runs(p.runs, "raster", [&] {
+    write_gbuffer(frame, p.pool, p.control, raster, target, times);
+    pass.parts.push_back(times);
+  });
+  pass.parts.erase(pass.parts.begin(), pass.parts.end() - static_cast<ptrdiff_t>(pass.ms.size()));
+  covered = count_covered(target);
+  return pass;
+}
+
+PassTimes measure_primary(Picture& p, uint64_t& covered) {
   Counts counts;
-  Screen screen;
-  const char* name = frame.settings.primary == Primary::raster ? "raster" : "primary";
-  const PassTimes pass = time_pass(p, name, counts, [&] {
-    set_up_screen(p, frame, screen);
+  const PassTimes pass = time_pass(p, "primary", counts, [&] {
     for_each_tile(p, [&](Block* blocks, Scratch& s) { see_tile(p, blocks, Detail::points, s); });
   });
+  covered = 0;
+  for (const Block& b : p.blocks) covered += count_of(b.surfaces.points.live);
+  return pass;
+}
+
+// What the later passes start from.
+void see_picture(Picture& p, FrameContext& frame, RayRules rules) {
+  Screen screen;
+  set_up_screen(p, frame, screen);
   for_each_tile(p, [&](Block* blocks, Scratch& s) { see_tile(p, blocks, Detail::surfaces, s); });
   frame.raster = nullptr;
-  covered = 0;
-  for (Block& b : p.blocks) {
-    set_keys(frame.settings, rules, b);
-    covered += count_of(b.surfaces.points.live);
-  }
-  return pass;
+  for (Block& b : p.blocks) set_keys(frame.settings, rules, b);
 }
 
 // The rays of some neighbouring blocks, and what they count.
@@ -224,7 +240,7 @@ void make_mirrors(Scene& scene) {
 }
 
 Measurement measure_passes(const Scene& scene, const Camera& camera, const Settings& wanted, RayRules rules,
-                           const Runs& runs, Control& control) {
+                           Layout layout, const Runs& runs, Control& control) {
   check_settings(wanted);
   check_camera(camera);
   Settings settings = wanted;
@@ -233,8 +249,15 @@ Measurement measure_passes(const Scene& scene, const Camera& camera, const Setti
   ThreadPool pool(settings.threads);
   Measurement out;
   Accelerator accelerator;
-  PassTimes build{"build", {}, 0, 0};
-  build.ms = time_runs(runs, "build", [&] { build_accelerator(scene, pool, control, accelerator); });
+  const Effects& on = settings.effects;
+  const bool has_effects = on.shadows || on.reflection || on.refraction || on.ambient_occlusion;
+  PassTimes build{"build", {}, 0, 0, {}};
+  build.ms = time_runs(runs, "build", [&] {
+    if (has_effects || settings.primary == Primary::trace)
+      build_accelerator(scene, pool, control, accelerator);
+    else
+      gather_triangles(scene, pool, accelerator);
+  });
   build.bytes = tree_bytes(accelerator.all) + tree_bytes(accelerator.glass);
   out.passes.push_back(build);
 
@@ -246,9 +269,11 @@ Measurement measure_passes(const Scene& scene, const Camera& camera, const Setti
   out.isa = frame.kernels.isa;
   out.threads = static_cast<int>(pool.workers());
   Picture picture = lay_out(frame, pool, control, runs);
-  out.passes.push_back(measure_primary(picture, frame, rules, out.covered_pixels));
+  out.passes.push_back(settings.primary == Primary::raster
+                           ? measure_raster(picture, frame, layout, out.covered_pixels)
+                           : measure_primary(picture, out.covered_pixels));
+  if (has_effects) see_picture(picture, frame, rules);
 
-  const Effects& on = settings.effects;
   Counts counts;
   const auto blocks = [&](const char* name, auto trace) {
     out.passes.push_back(measure_points(
@@ -289,7 +314,7 @@ Measurement measure_passes(const Scene& scene, const Camera& camera, const Setti
     return out;
   }
   std::vector<Block>().swap(picture.blocks);
-  PassTimes whole{"frame", {}, 0, 0};
+  PassTimes whole{"frame", {}, 0, 0, {}};
   whole.ms = time_runs(runs, "frame", [&] {
     const Frame rendered = render_frame(scene, accelerator, camera, settings, pool, control);
     whole.rays = 0;

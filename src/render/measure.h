@@ -31,11 +31,26 @@ struct Runs {
   std::function<void(const Progress&)> on_progress;  // before every run, off the clock
 };
 
+// What the rasterizer writes for each pixel of the picture (kernels/layout.h).
+//   full  position, shading normal, albedo, material, triangle and depth: 40 bytes a pixel
+//   min   octahedral shading normal, material and depth: 10 bytes a pixel
+// The albedo is that of the material, Kd: textures are not looked up.
+enum class Layout { full, min };
+
+// Where the time of a raster pass goes, in milliseconds. The first three stages run one after the other, on
+// all threads, and are timed by the wall clock. Then each thread takes tile after tile, fills it and writes
+// its pixels: the threads' time in either, divided by the number of threads. What is missing in the sum is
+// the start of the threads and the wait for the last one.
+struct RasterTimes {
+  double transform = 0, setup = 0, bin = 0, fill = 0, attributes = 0;
+};
+
 struct PassTimes {
   std::string name;
-  std::vector<double> ms;  // wall clock, one for every run
-  uint64_t rays = 0;       // of one run
-  uint64_t bytes = 0;      // of the trees, for `build`
+  std::vector<double> ms;            // wall clock, one for every run
+  uint64_t rays = 0;                 // of one run
+  uint64_t bytes = 0;                // of the trees, for `build`
+  std::vector<RasterTimes> parts{};  // of each run, for `raster`
 };
 
 struct Measurement {
@@ -50,8 +65,9 @@ struct Measurement {
 };
 
 // Times every pass alone:
-//   build         the trees
-//   raster        what each pixel sees, as position and geometric normal; `primary` when it is traced
+//   build         the trees; without anything to be traced only the triangles side by side
+//   raster        what each pixel sees, written in the layout; or, named `primary`, traced, as position and
+//                 geometric normal
 //   shadows, ao   the rays of every visible surface
 //   reflection,   the paths of that kind from every visible surface, lit with shadows but without ambient
 //   refraction    occlusion; by the anchor's rules the mirrored rays, and no refraction
@@ -61,10 +77,10 @@ struct Measurement {
 //                 be held against their sum in another tracer, which does not shade and encode either.
 // control.on_progress is called from within frames: leave it empty. Throws as render() does.
 Measurement measure_passes(const Scene& scene, const Camera& camera, const Settings& settings, RayRules rules,
-                           const Runs& runs, Control& control);
+                           Layout layout, const Runs& runs, Control& control);
 
-// Bytes that measure_passes keeps from pass to pass, besides scene, trees and frame.
-size_t measurement_bytes(const Settings& settings);
+// Bytes that measure_passes uses at most, besides scene, trees and frame.
+size_t measurement_bytes(const Settings& settings, Layout layout);
 
 // A frame to be timed, and its name for runs.on_progress.
 struct FrameJob {

@@ -1,5 +1,6 @@
 #include "render/measure_picture.h"
 
+#include "render/gbuffer.h"
 #include "render/tile.h"
 #include "vitral/error.h"
 
@@ -14,9 +15,10 @@ double milliseconds_since(std::chrono::steady_clock::time_point start) {
 
 }  // namespace
 
-size_t measurement_bytes(const Settings& settings) {
+size_t measurement_bytes(const Settings& settings, Layout layout) {
   const Tiles tiles = tiles_of(crop_of(settings));
-  return static_cast<size_t>(tiles.across) * static_cast<size_t>(tiles.down) * kTileBlocks * sizeof(Block);
+  return static_cast<size_t>(tiles.across) * static_cast<size_t>(tiles.down) * kTileBlocks * sizeof(Block) +
+         gbuffer_bytes(settings, layout);
 }
 
 Picture lay_out(const FrameContext& frame, ThreadPool& pool, const Control& control, const Runs& runs) {
@@ -58,7 +60,7 @@ std::vector<double> time_runs(const Runs& runs, const char* name, const std::fun
 }
 
 PassTimes time_pass(Picture& p, const char* name, Counts& counts, const std::function<void()>& run) {
-  PassTimes pass{name, {}, 0, 0};
+  PassTimes pass{name, {}, 0, 0, {}};
   pass.ms = time_runs(p.runs, name, [&] {
     for (Scratch& s : p.scratch) s.counts = {}, s.tally = {};
     run();

@@ -45,9 +45,9 @@ static inline FloatVector load_rows(const float* table, size_t stride, const uin
 
 // From every quarter of four lanes: a0 b0 a1 b1, a2 b2 a3 b3, a0 a1 b0 b1, a2 a3 b2 b3.
 #if LANES == 16
-#define VITRAL_QUARTERS(a, b, i, j, k, l)                                                             \
-  __builtin_shufflevector(a, b, i, j, k, l, i + 4, j + 4, k + 4, l + 4, i + 8, j + 8, k + 8, l + 8, \
-                          i + 12, j + 12, k + 12, l + 12)
+#define VITRAL_QUARTERS(a, b, i, j, k, l)                                                                   \
+  __builtin_shufflevector(a, b, i, j, k, l, i + 4, j + 4, k + 4, l + 4, i + 8, j + 8, k + 8, l + 8, i + 12, \
+                          j + 12, k + 12, l + 12)
 #elif LANES == 8
 #define VITRAL_QUARTERS(a, b, i, j, k, l) \
   __builtin_shufflevector(a, b, i, j, k, l, i + 4, j + 4, k + 4, l + 4)

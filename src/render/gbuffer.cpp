@@ -1,0 +1,106 @@
+#include "render/gbuffer.h"
+
+#include "vitral/error.h"
+
+namespace vitral {
+namespace {
+
+// What a worker keeps to itself; in cache lines of its own.
+struct alignas(64) RasterWorker {
+  TileVisibility seen;
+  double fill = 0, attributes = 0;  // seconds
+};
+
+size_t blocks_of(const Tiles& tiles) {
+  return static_cast<size_t>(tiles.across) * static_cast<size_t>(tiles.down) * kTileBlocks;
+}
+
+// Calls body(place in the buffer, x, y) for the blocks of a tile that have pixels of the crop.
+template <class Body>
+void for_each_block(const GBuffer& buffer, size_t tile, const Body& body) {
+  const Rectangle& crop = buffer.crop;
+  const int column = static_cast<int>(tile) % buffer.tiles.across,
+            row = static_cast<int>(tile) / buffer.tiles.across;
+  for (int block = 0; block < kTileBlocks; ++block) {
+    const int x = (buffer.tiles.x + column) * kTileSide + block % kTileBlocksAcross * kBlockSide;
+    const int y = (buffer.tiles.y + row) * kTileSide + block / kTileBlocksAcross * kBlockSide;
+    if (x < crop.x + crop.width && y < crop.y + crop.height && x + kBlockSide > crop.x &&
+        y + kBlockSide > crop.y)
+      body(tile * kTileBlocks + static_cast<size_t>(block), block, x, y);
+  }
+}
+
+void write_tile(const FrameContext& frame, const RasterView& view, size_t tile, RasterWorker& worker,
+                GBuffer& out) {
+  const int tile_x = out.tiles.x + static_cast<int>(tile) % out.tiles.across;
+  const int tile_y = out.tiles.y + static_cast<int>(tile) / out.tiles.across;
+  const Clock::time_point start = Clock::now();
+  frame.kernels.fill_tile(view, tile_x, tile_y, worker.seen);
+  const Clock::time_point filled = Clock::now();
+  const SurfaceView& scene = frame.accelerator.surfaces;
+  for_each_block(out, tile, [&](size_t place, int block, int x, int y) {
+    const uint32_t* triangles = worker.seen.triangle + block * kPacketSize;
+    if (out.full.empty()) {
+      frame.kernels.write_min(scene, frame.camera, x, y, triangles, out.min[place]);
+    } else {
+      frame.kernels.write_full(scene, frame.camera, x, y, triangles, out.full[place]);
+    }
+  });
+  worker.fill += seconds_between(start, filled);
+  worker.attributes += seconds_between(filled, Clock::now());
+}
+
+}  // namespace
+
+GBuffer make_gbuffer(const FrameContext& frame, Layout layout) {
+  if (layout == Layout::min && frame.scene.materials.size() > kMaxMinMaterials) {
+    throw UsageError("the layout min has room for " + std::to_string(kMaxMinMaterials) +
+                     " materials, there are " + std::to_string(frame.scene.materials.size()));
+  }
+  const Rectangle crop = crop_of(frame.settings);
+  GBuffer out{crop, tiles_of(crop), {}, {}};
+  if (layout == Layout::full) out.full.resize(blocks_of(out.tiles));
+  if (layout == Layout::min) out.min.resize(blocks_of(out.tiles));
+  return out;
+}
+
+size_t gbuffer_bytes(const Settings& settings, Layout layout) {
+  return blocks_of(tiles_of(crop_of(settings))) *
+         (layout == Layout::full ? sizeof(FullBlock) : sizeof(MinBlock));
+}
+
+size_t block_of(const GBuffer& buffer, int x, int y) {
+  const int column = x / kTileSide - buffer.tiles.x, row = y / kTileSide - buffer.tiles.y;
+  const int block = y % kTileSide / kBlockSide * kTileBlocksAcross + x % kTileSide / kBlockSide;
+  return static_cast<size_t>(row * buffer.tiles.across + column) * kTileBlocks + static_cast<size_t>(block);
+}
+
+void write_gbuffer(const FrameContext& frame, ThreadPool& pool, const Control& control, RasterFrame& raster,
+                   GBuffer& out, RasterTimes& times) {
+  SetupTimes setup;
+  const RasterView view = setup_raster(frame, out.crop, pool, control, raster, setup);
+  std::vector<RasterWorker> workers(pool.workers());
+  pool.parallel_for(blocks_of(out.tiles) / kTileBlocks, [&](size_t tile, size_t worker) {
+    if (control.stop.load(std::memory_order_relaxed)) throw Interrupted();
+    write_tile(frame, view, tile, workers[worker], out);
+  });
+  times = {setup.transform * 1e3, setup.setup * 1e3, setup.bin * 1e3, 0, 0};
+  for (const RasterWorker& w : workers) {
+    times.fill += w.fill * 1e3 / static_cast<double>(workers.size());
+    times.attributes += w.attributes * 1e3 / static_cast<double>(workers.size());
+  }
+}
+
+uint64_t count_covered(const GBuffer& buffer) {
+  uint64_t covered = 0;
+  const size_t tiles = blocks_of(buffer.tiles) / kTileBlocks;
+  for (size_t tile = 0; tile < tiles; ++tile) {
+    for_each_block(buffer, tile, [&](size_t place, int, int, int) {
+      const float* depth = buffer.full.empty() ? buffer.min[place].depth : buffer.full[place].depth;
+      for (int i = 0; i < kPacketSize; ++i) covered += depth[i] > 0;
+    });
+  }
+  return covered;
+}
+
+}  // namespace vitral
