@@ -113,9 +113,12 @@ static inline auto edge_values(const Vec3T<F>& a, const Vec3T<F>& b, const Vec3T
 template <class F, class D>
 static inline auto surround_origin(const Vec3T<F>& a, const Vec3T<F>& b, const Vec3T<F>& c,
                                    const Shear<F>& shear, const EdgeValues<D>& e) {
+  // None is negative or none is positive; where both hold, all are 0 and the triangle is seen from the side.
   const D zero = D(0.0);
-  const auto inside = either(both(both(e.u >= zero, e.v >= zero), both(e.w >= zero, e.det > zero)),
-                             both(both(e.u <= zero, e.v <= zero), both(e.w <= zero, e.det < zero)));
+  const auto none_negative = least_of(e.u, e.v, e.w) >= zero,
+             none_positive = greatest_of(e.u, e.v, e.w) <= zero;
+  const auto inside =
+      either(both(none_negative, invert(none_positive)), both(none_positive, invert(none_negative)));
   const D inverse = D(1.0) / select(inside, e.det, D(1.0));
   const D z = (e.u * widen(a.z) + e.v * widen(b.z)) + e.w * widen(c.z);
   using M = decltype(either(inside, inside));

@@ -13,6 +13,9 @@
 namespace vitral {
 namespace VITRAL_ISA {
 
+// After the parameters of a lambda: its captures and arguments stay in registers.
+#define VITRAL_INLINED __attribute__((always_inline))
+
 inline constexpr uint32_t kAllLanes = static_cast<uint32_t>((uint64_t{1} << kLanes) - 1);
 
 // The last triangle that a whole register saw.
@@ -137,18 +140,70 @@ static inline Vec3T<Float> pixel_directions(const Pinhole& camera, int x, int y,
   return primary_direction(camera, px, py);
 }
 
-// Where the camera's rays meet the facets (visible.h). Nearly always all lanes have one dominant axis.
-[[gnu::always_inline]] static inline auto visible_hit(const Facet<Float, Mask>& f, const Vec3T<Float>& d,
-                                                      const Pinhole& camera, Mask seen) {
+// A block of pixels at (x, y) and the triangles they see.
+struct SeenBlock {
+  const SurfaceView& scene;
+  const Pinhole& camera;
+  int x, y;
+  const uint32_t* numbers;
+};
+
+struct VisiblePoint {
+  Float t, u, v;
+};
+
+// Replaces the points of the lanes from g on whose rays miss their triangles.
+[[gnu::noinline]] static void correct_misses(const SeenBlock& block, int g, uint32_t missed, float* t,
+                                             float* u, float* v) {
+  for (; missed != 0; missed &= missed - 1) {
+    const int lane = __builtin_ctz(missed), pixel = g + lane;
+    const auto point = vitral::visible_point(block.camera, block.scene.triangles[block.numbers[pixel]],
+                                             block.x + pixel % kBlockSide, block.y + pixel / kBlockSide);
+    t[lane] = point.t, u[lane] = point.u, v[lane] = point.v;
+  }
+}
+
+// Where the camera's rays through a register of pixels meet their facets (visible.h). Nearly always all
+// lanes have one dominant axis, and all rays hit.
+[[gnu::always_inline]] static inline VisiblePoint visible_points(const SeenBlock& block, int g,
+                                                                 const Facet<Float, Mask>& f,
+                                                                 const Vec3T<Float>& d, Mask seen) {
   const Float x = absolute(d.x), y = absolute(d.y), z = absolute(d.z);
   const Mask x_over_y = x > y;
   const Mask along_x = both(x_over_y, x > z), along_y = both(invert(x_over_y), y > z);
-  Vec3T<Float> v[4] = {f.from_eye[0], f.from_eye[1], f.from_eye[2], d};
+  Vec3T<Float> p[4] = {f.from_eye[0], f.from_eye[1], f.from_eye[2], d};
   if (any(either(along_x, along_y))) {
-    for (Vec3T<Float>& each : v)
+    for (Vec3T<Float>& each : p)
       each = select3(along_x, permute(each, 0), select3(along_y, permute(each, 1), each));
   }
-  return visible_point(v[0], v[1], v[2], v[3], Float(camera.near), Float(camera.far), seen);
+  const Shear<Float> shear = make_shear(p[3]);
+  const auto hit = surround_origin(project(p[0], shear), project(p[1], shear), project(p[2], shear), shear);
+  const uint32_t missed = bits(both(seen, invert(both(hit.hit, hit.t > Float(0.0f)))));
+  if (missed == 0) return {hit.t, hit.u, hit.v};
+  alignas(64) float t[kLanes], u[kLanes], v[kLanes];
+  store(t, hit.t), store(u, hit.u), store(v, hit.v);
+  correct_misses(block, g, missed, t, u, v);
+  return {load(t), load(u), load(v)};
+}
+
+// For every register of the block's pixels from g on: body(g, seen, facet, point, direction, number) where
+// any sees a triangle, nothing(g) where none does; `number` as above.
+template <class Body, class Nothing>
+[[gnu::always_inline]] static inline void for_each_visible(const SeenBlock& block, const Nothing& nothing,
+                                                           const Body& body) {
+  OneFacet one;
+  for (int g = 0; g < kPacketSize; g += kLanes) {
+    const Mask seen = invert(load(block.numbers + g) == Uint(kNoTriangle));
+    if (!any(seen)) {
+      nothing(g);
+      continue;
+    }
+    const Vec3T<Float> direction = pixel_directions(block.camera, block.x, block.y, g);
+    with_facets(block.scene, block.camera.origin, block.numbers + g, seen, one,
+                [&](const Facet<Float, Mask>& facet, uint32_t number) VITRAL_INLINED {
+                  body(g, seen, facet, visible_points(block, g, facet, direction, seen), direction, number);
+                });
+  }
 }
 
 }  // namespace VITRAL_ISA

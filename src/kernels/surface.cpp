@@ -76,7 +76,8 @@ template <class Body>
       continue;
     }
     with_facets(scene, Vec3{0, 0, 0}, hits.triangle + g, met, one,
-                [&](const Facet<Float, Mask>& facet, uint32_t number) { body(g, met, facet, number); });
+                [&](const Facet<Float, Mask>& facet, uint32_t number)
+                    VITRAL_INLINED { body(g, met, facet, number); });
   }
 }
 
@@ -86,10 +87,11 @@ uint64_t surface_points(const KdTriangle* triangles, const RayPacket& rays, cons
                         const OffsetRule& offset, PointPacket& out) {
   const SurfaceView scene{triangles, nullptr, nullptr, nullptr, nullptr};
   uint64_t back = 0;
-  for_each_hit(scene, rays, hits, out, [&](int g, Mask met, const Facet<Float, Mask>& facet, uint32_t) {
-    back |= store_points(facet, load(hits.u + g), load(hits.v + g), load3(rays.dx, rays.dy, rays.dz, g), met,
-                         offset, g, out);
-  });
+  for_each_hit(scene, rays, hits, out,
+               [&](int g, Mask met, const Facet<Float, Mask>& facet, uint32_t) VITRAL_INLINED {
+                 back |= store_points(facet, load(hits.u + g), load(hits.v + g),
+                                      load3(rays.dx, rays.dy, rays.dz, g), met, offset, g, out);
+               });
   return back;
 }
 
@@ -97,7 +99,7 @@ void hit_surfaces(const SurfaceView& scene, const RayPacket& rays, const HitPack
                   const OffsetRule& offset, SurfacePacket& out) {
   out.back = 0;
   for_each_hit(scene, rays, hits, out.points,
-               [&](int g, Mask met, const Facet<Float, Mask>& facet, uint32_t number) {
+               [&](int g, Mask met, const Facet<Float, Mask>& facet, uint32_t number) VITRAL_INLINED {
                  out.back |= store_points(facet, load(hits.u + g), load(hits.v + g),
                                           load3(rays.dx, rays.dy, rays.dz, g), met, offset, g, out.points);
                  store(out.t + g, load(hits.t + g));
@@ -107,28 +109,19 @@ void hit_surfaces(const SurfaceView& scene, const RayPacket& rays, const HitPack
 
 void visible_surfaces(const SurfaceView& scene, const Pinhole& camera, int x, int y, const uint32_t* numbers,
                       const OffsetRule& offset, HitPacket& hits, SurfacePacket& out) {
-  OneFacet one;
   out.back = 0;
   out.points.live = 0;
-  for (int g = 0; g < kPacketSize; g += kLanes) {
-    const Uint number = load(numbers + g);
-    const Mask seen = invert(number == Uint(kNoTriangle));
-    store(hits.triangle + g, number);
-    out.points.live |= static_cast<uint64_t>(bits(seen)) << g;
-    if (!any(seen)) {
-      store_nothing(g, out.points);
-      continue;
-    }
-    const Vec3T<Float> direction = pixel_directions(camera, x, y, g);
-    with_facets(scene, camera.origin, numbers + g, seen, one,
-                [&](const Facet<Float, Mask>& facet, uint32_t same) {
-                  const auto hit = visible_hit(facet, direction, camera, seen);
-                  store(hits.t + g, hit.t), store(hits.u + g, hit.u), store(hits.v + g, hit.v);
-                  store(out.t + g, hit.t);
-                  out.back |= store_points(facet, hit.u, hit.v, direction, seen, offset, g, out.points);
-                  store_colors(scene, numbers + g, same, bits(seen), g, out);
-                });
-  }
+  for_each_visible(
+      {scene, camera, x, y, numbers}, [&](int g) { store_nothing(g, out.points); },
+      [&](int g, Mask seen, const Facet<Float, Mask>& facet, const VisiblePoint& point,
+          const Vec3T<Float>& direction, uint32_t number) VITRAL_INLINED {
+        store(hits.triangle + g, load(numbers + g));
+        store(hits.t + g, point.t), store(hits.u + g, point.u), store(hits.v + g, point.v);
+        store(out.t + g, point.t);
+        out.points.live |= static_cast<uint64_t>(bits(seen)) << g;
+        out.back |= store_points(facet, point.u, point.v, direction, seen, offset, g, out.points);
+        store_colors(scene, numbers + g, number, bits(seen), g, out);
+      });
 }
 
 }  // namespace VITRAL_ISA

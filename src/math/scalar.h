@@ -56,6 +56,14 @@ static inline double absolute(double x) {
   return __builtin_fabs(x);
 }
 
+// As for float (vitral/box.h).
+static inline double least(double a, double b) {
+  return a < b ? a : b;
+}
+static inline double greatest(double a, double b) {
+  return a > b ? a : b;
+}
+
 // |magnitude| with the sign bit of `sign`.
 static inline float copy_sign(float magnitude, float sign) {
   return __builtin_copysignf(magnitude, sign);

@@ -347,6 +347,30 @@ static inline Int least(Int a, Int b) {
 static inline Int greatest(Int a, Int b) {
   return select(a > b, a, b);
 }
+static inline Double least(const Double& a, const Double& b) {
+#if LANES == 16
+  return {DoubleVector(_mm512_maskz_min_pd(0xff, __m512d(a.lo), __m512d(b.lo))),
+          DoubleVector(_mm512_maskz_min_pd(0xff, __m512d(a.hi), __m512d(b.hi)))};
+#elif LANES == 8
+  return {DoubleVector(_mm256_min_pd(__m256d(a.lo), __m256d(b.lo))),
+          DoubleVector(_mm256_min_pd(__m256d(a.hi), __m256d(b.hi)))};
+#else
+  return {DoubleVector(_mm_min_pd(__m128d(a.lo), __m128d(b.lo))),
+          DoubleVector(_mm_min_pd(__m128d(a.hi), __m128d(b.hi)))};
+#endif
+}
+static inline Double greatest(const Double& a, const Double& b) {
+#if LANES == 16
+  return {DoubleVector(_mm512_maskz_max_pd(0xff, __m512d(a.lo), __m512d(b.lo))),
+          DoubleVector(_mm512_maskz_max_pd(0xff, __m512d(a.hi), __m512d(b.hi)))};
+#elif LANES == 8
+  return {DoubleVector(_mm256_max_pd(__m256d(a.lo), __m256d(b.lo))),
+          DoubleVector(_mm256_max_pd(__m256d(a.hi), __m256d(b.hi)))};
+#else
+  return {DoubleVector(_mm_max_pd(__m128d(a.lo), __m128d(b.lo))),
+          DoubleVector(_mm_max_pd(__m128d(a.hi), __m128d(b.hi)))};
+#endif
+}
 static inline Float square_root(Float a) {
 #if LANES == 16
   return FloatVector(_mm512_maskz_sqrt_ps(0xffff, __m512(a.v)));
@@ -402,17 +426,34 @@ static inline Int to_int(Float a) {
   return __builtin_convertvector(a.v, IntVector);
 }  // towards zero; |a| < 2^31
 
+// g++ 12 converts half of a register at a time when it is not told how.
 static inline Double widen(Float a) {
-  HalfFloatVector half[2];
-  std::memcpy(half, &a.v, sizeof half);
-  return {__builtin_convertvector(half[0], DoubleVector), __builtin_convertvector(half[1], DoubleVector)};
+#if LANES == 16
+  const auto lo = __builtin_shufflevector(a.v, a.v, 0, 1, 2, 3, 4, 5, 6, 7);
+  const auto hi = __builtin_shufflevector(a.v, a.v, 8, 9, 10, 11, 12, 13, 14, 15);
+  return {DoubleVector(_mm512_maskz_cvtps_pd(0xff, __m256(lo))),
+          DoubleVector(_mm512_maskz_cvtps_pd(0xff, __m256(hi)))};
+#elif LANES == 8
+  const auto lo = __builtin_shufflevector(a.v, a.v, 0, 1, 2, 3);
+  const auto hi = __builtin_shufflevector(a.v, a.v, 4, 5, 6, 7);
+  return {DoubleVector(_mm256_cvtps_pd(__m128(lo))), DoubleVector(_mm256_cvtps_pd(__m128(hi)))};
+#else
+  return {DoubleVector(_mm_cvtps_pd(__m128(a.v))),
+          DoubleVector(_mm_cvtps_pd(_mm_movehl_ps(__m128(a.v), __m128(a.v))))};
+#endif
 }
 static inline Float narrow(const Double& a) {
-  const HalfFloatVector half[2] = {__builtin_convertvector(a.lo, HalfFloatVector),
-                                   __builtin_convertvector(a.hi, HalfFloatVector)};
-  FloatVector v;
-  std::memcpy(&v, half, sizeof v);
-  return v;
+#if LANES == 16
+  const auto lo = HalfFloatVector(_mm512_maskz_cvtpd_ps(0xff, __m512d(a.lo)));
+  const auto hi = HalfFloatVector(_mm512_maskz_cvtpd_ps(0xff, __m512d(a.hi)));
+  return FloatVector(__builtin_shufflevector(lo, hi, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15));
+#elif LANES == 8
+  const auto lo = HalfFloatVector(_mm256_cvtpd_ps(__m256d(a.lo)));
+  const auto hi = HalfFloatVector(_mm256_cvtpd_ps(__m256d(a.hi)));
+  return FloatVector(__builtin_shufflevector(lo, hi, 0, 1, 2, 3, 4, 5, 6, 7));
+#else
+  return FloatVector(_mm_movelh_ps(_mm_cvtpd_ps(__m128d(a.lo)), _mm_cvtpd_ps(__m128d(a.hi))));
+#endif
 }
 
 static inline Double to_double(Int a) {
