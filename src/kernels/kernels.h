@@ -79,11 +79,12 @@ struct Kernels {
                            const uint32_t* numbers, const OffsetRule& offset, HitPacket& hits,
                            SurfacePacket& out);
 
-  // The same points, written as layout.h says.
-  void (*write_full)(const SurfaceView& scene, const Pinhole& camera, int x, int y, const uint32_t* numbers,
-                     FullBlock& out);
-  void (*write_min)(const SurfaceView& scene, const Pinhole& camera, int x, int y, const uint32_t* numbers,
-                    MinBlock& out);
+  // The same points of the tile whose corner is (x, y), written as layout.h says: its i-th block to out[i],
+  // where bit i of `wanted` is set.
+  void (*write_full)(const SurfaceView& scene, const Pinhole& camera, int x, int y,
+                     const TileVisibility& tile, uint32_t wanted, FullBlock* out);
+  void (*write_min)(const SurfaceView& scene, const Pinhole& camera, int x, int y, const TileVisibility& tile,
+                    uint32_t wanted, MinBlock* out);
 
   // trace_closest, closest_blocks, trace_shadows and ambient_blocks, with the same answers, which also add
   // up what they do.

@@ -19,10 +19,8 @@ namespace {
                              f.smooth);
 }
 
-}  // namespace
-
-void write_full(const SurfaceView& scene, const Pinhole& camera, int x, int y, const uint32_t* numbers,
-                FullBlock& out) {
+void write_block(const SeenBlock& block, FullBlock& out) {
+  const SurfaceView& scene = block.scene;
   const Vec3T<Float> zero = broadcast(Vec3{0, 0, 0});
   const auto nothing = [&](int g) VITRAL_INLINED {
     store(out.depth + g, Float(0.0f));
@@ -32,13 +30,13 @@ void write_full(const SurfaceView& scene, const Pinhole& camera, int x, int y, c
     store(out.material + g, Uint(kNoMaterial));
     store(out.triangle + g, Uint(kNoTriangle));
   };
-  for_each_visible({scene, camera, x, y, numbers}, nothing,
+  for_each_visible(block, nothing,
                    [&](int g, Mask seen, const Facet<Float, Mask>& f, const VisiblePoint& p,
                        const Vec3T<Float>& direction, uint32_t number) VITRAL_INLINED {
                      store(out.depth + g, select(seen, p.t, Float(0.0f)));
                      store3(out.px, out.py, out.pz, g, select3(seen, position_at(f, p.u, p.v), zero));
                      store3(out.nx, out.ny, out.nz, g, select3(seen, normal_at(f, p, direction, seen), zero));
-                     store(out.triangle + g, load(numbers + g));
+                     store(out.triangle + g, load(block.numbers + g));
                      if (number != kNoTriangle && bits(seen) == kAllLanes) {
                        const uint32_t material = scene.materials[number];
                        store(out.material + g, Uint(material));
@@ -49,22 +47,22 @@ void write_full(const SurfaceView& scene, const Pinhole& camera, int x, int y, c
                      store(out.albedo + g, Uint(0u));
                      for (uint32_t left = bits(seen); left != 0; left &= left - 1) {
                        const int lane = g + __builtin_ctz(left);
-                       const uint32_t material = scene.materials[numbers[lane]];
+                       const uint32_t material = scene.materials[block.numbers[lane]];
                        out.material[lane] = material;
                        out.albedo[lane] = scene.colors[material].rgba8;
                      }
                    });
 }
 
-void write_min(const SurfaceView& scene, const Pinhole& camera, int x, int y, const uint32_t* numbers,
-               MinBlock& out) {
+void write_block(const SeenBlock& block, MinBlock& out) {
+  const SurfaceView& scene = block.scene;
   const auto nothing = [&](int g) VITRAL_INLINED {
     store(out.depth + g, Float(0.0f));
     store(out.normal + g, Uint(0u));
     for (int i = 0; i < kLanes; ++i) out.material[g + i] = kNoMinMaterial;
   };
   for_each_visible(
-      {scene, camera, x, y, numbers}, nothing,
+      block, nothing,
       [&](int g, Mask seen, const Facet<Float, Mask>& f, const VisiblePoint& p, const Vec3T<Float>& direction,
           uint32_t number) VITRAL_INLINED {
         store(out.depth + g, select(seen, p.t, Float(0.0f)));
@@ -75,11 +73,42 @@ void write_min(const SurfaceView& scene, const Pinhole& camera, int x, int y, co
           return;
         }
         for (int i = 0; i < kLanes; ++i) {
-          const uint32_t triangle = numbers[g + i];
+          const uint32_t triangle = block.numbers[g + i];
           out.material[g + i] =
               triangle == kNoTriangle ? kNoMinMaterial : static_cast<uint16_t>(scene.materials[triangle]);
         }
       });
+}
+
+// Calls body(number, block) for the blocks of the tile at (x, y) that are wanted, bit by bit.
+template <class Body>
+inline void for_each_block(const SurfaceView& scene, const Pinhole& camera, int x, int y,
+                           const TileVisibility& tile, uint32_t wanted, const Body& body) {
+  for (; wanted != 0; wanted &= wanted - 1) {
+    const int i = __builtin_ctz(wanted);
+    body(i, SeenBlock{scene, camera, x + i % kTileBlocksAcross * kBlockSide,
+                      y + i / kTileBlocksAcross * kBlockSide, tile.triangle + i * kPacketSize});
+  }
+}
+
+}  // namespace
+
+// Put together in cache, then streamed: the frame's 40 bytes a pixel are more than caches hold, and writing
+// them the ordinary way would read them first.
+void write_full(const SurfaceView& scene, const Pinhole& camera, int x, int y, const TileVisibility& tile,
+                uint32_t wanted, FullBlock* out) {
+  FullBlock whole;
+  for_each_block(scene, camera, x, y, tile, wanted, [&](int i, const SeenBlock& block) {
+    write_block(block, whole);
+    stream(out + i, &whole, sizeof whole);
+  });
+  finish_streams();
+}
+
+void write_min(const SurfaceView& scene, const Pinhole& camera, int x, int y, const TileVisibility& tile,
+               uint32_t wanted, MinBlock* out) {
+  for_each_block(scene, camera, x, y, tile, wanted,
+                 [&](int i, const SeenBlock& block) { write_block(block, out[i]); });
 }
 
 }  // namespace VITRAL_ISA

@@ -36,10 +36,10 @@ void intersect_visible(const Pinhole& camera, const KdTriangle* triangles, int x
                        const uint32_t* numbers, HitPacket& hits);
 void visible_surfaces(const SurfaceView& scene, const Pinhole& camera, int x, int y, const uint32_t* numbers,
                       const OffsetRule& offset, HitPacket& hits, SurfacePacket& out);
-void write_full(const SurfaceView& scene, const Pinhole& camera, int x, int y, const uint32_t* numbers,
-                FullBlock& out);
-void write_min(const SurfaceView& scene, const Pinhole& camera, int x, int y, const uint32_t* numbers,
-               MinBlock& out);
+void write_full(const SurfaceView& scene, const Pinhole& camera, int x, int y, const TileVisibility& tile,
+                uint32_t wanted, FullBlock* out);
+void write_min(const SurfaceView& scene, const Pinhole& camera, int x, int y, const TileVisibility& tile,
+               uint32_t wanted, MinBlock* out);
 
 }  // namespace VITRAL_ISA
 }  // namespace vitral

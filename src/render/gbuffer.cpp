@@ -15,37 +15,38 @@ size_t blocks_of(const Tiles& tiles) {
   return static_cast<size_t>(tiles.across) * static_cast<size_t>(tiles.down) * kTileBlocks;
 }
 
-// Calls body(place in the buffer, x, y) for the blocks of a tile that have pixels of the crop.
-template <class Body>
-void for_each_block(const GBuffer& buffer, size_t tile, const Body& body) {
-  const Rectangle& crop = buffer.crop;
-  const int column = static_cast<int>(tile) % buffer.tiles.across,
-            row = static_cast<int>(tile) / buffer.tiles.across;
+int tile_x(const GBuffer& buffer, size_t tile) {
+  return (buffer.tiles.x + static_cast<int>(tile) % buffer.tiles.across) * kTileSide;
+}
+int tile_y(const GBuffer& buffer, size_t tile) {
+  return (buffer.tiles.y + static_cast<int>(tile) / buffer.tiles.across) * kTileSide;
+}
+
+// The blocks of a tile that have pixels of the crop, a bit each.
+uint32_t blocks_inside(const GBuffer& buffer, size_t tile) {
+  uint32_t inside = 0;
   for (int block = 0; block < kTileBlocks; ++block) {
-    const int x = (buffer.tiles.x + column) * kTileSide + block % kTileBlocksAcross * kBlockSide;
-    const int y = (buffer.tiles.y + row) * kTileSide + block / kTileBlocksAcross * kBlockSide;
-    if (x < crop.x + crop.width && y < crop.y + crop.height && x + kBlockSide > crop.x &&
-        y + kBlockSide > crop.y)
-      body(tile * kTileBlocks + static_cast<size_t>(block), block, x, y);
+    const int x = tile_x(buffer, tile) + block % kTileBlocksAcross * kBlockSide;
+    const int y = tile_y(buffer, tile) + block / kTileBlocksAcross * kBlockSide;
+    if (lanes_inside(buffer.crop, x, y) != 0) inside |= 1u << block;
   }
+  return inside;
 }
 
 void write_tile(const FrameContext& frame, const RasterView& view, size_t tile, RasterWorker& worker,
                 GBuffer& out) {
-  const int tile_x = out.tiles.x + static_cast<int>(tile) % out.tiles.across;
-  const int tile_y = out.tiles.y + static_cast<int>(tile) / out.tiles.across;
+  const int x = tile_x(out, tile), y = tile_y(out, tile);
   const Clock::time_point start = Clock::now();
-  frame.kernels.fill_tile(view, tile_x, tile_y, worker.seen);
+  frame.kernels.fill_tile(view, x / kTileSide, y / kTileSide, worker.seen);
   const Clock::time_point filled = Clock::now();
   const SurfaceView& scene = frame.accelerator.surfaces;
-  for_each_block(out, tile, [&](size_t place, int block, int x, int y) {
-    const uint32_t* triangles = worker.seen.triangle + block * kPacketSize;
-    if (out.full.empty()) {
-      frame.kernels.write_min(scene, frame.camera, x, y, triangles, out.min[place]);
-    } else {
-      frame.kernels.write_full(scene, frame.camera, x, y, triangles, out.full[place]);
-    }
-  });
+  const uint32_t wanted = blocks_inside(out, tile);
+  const size_t first = tile * kTileBlocks;
+  if (out.full.empty()) {
+    frame.kernels.write_min(scene, frame.camera, x, y, worker.seen, wanted, &out.min[first]);
+  } else {
+    frame.kernels.write_full(scene, frame.camera, x, y, worker.seen, wanted, &out.full[first]);
+  }
   worker.fill += seconds_between(start, filled);
   worker.attributes += seconds_between(filled, Clock::now());
 }
@@ -93,12 +94,10 @@ void write_gbuffer(const FrameContext& frame, ThreadPool& pool, const Control& c
 
 uint64_t count_covered(const GBuffer& buffer) {
   uint64_t covered = 0;
-  const size_t tiles = blocks_of(buffer.tiles) / kTileBlocks;
-  for (size_t tile = 0; tile < tiles; ++tile) {
-    for_each_block(buffer, tile, [&](size_t place, int, int, int) {
-      const float* depth = buffer.full.empty() ? buffer.min[place].depth : buffer.full[place].depth;
-      for (int i = 0; i < kPacketSize; ++i) covered += depth[i] > 0;
-    });
+  for (size_t place = 0; place < blocks_of(buffer.tiles); ++place) {
+    if (!(blocks_inside(buffer, place / kTileBlocks) >> place % kTileBlocks & 1)) continue;
+    const float* depth = buffer.full.empty() ? buffer.min[place].depth : buffer.full[place].depth;
+    for (int i = 0; i < kPacketSize; ++i) covered += depth[i] > 0;
   }
   return covered;
 }

@@ -630,5 +630,28 @@ static inline Uint lane_numbers() {
 }
 #endif
 
+// Copies whole cache lines to memory that is not read soon: past the caches, and without reading what was
+// there. `from` and `to` start cache lines; `bytes` is a multiple of 64. Only after finish_streams() does a
+// thread that synchronizes with this one see them.
+static inline void stream(void* to, const void* from, size_t bytes) {
+#if LANES == 1
+  std::memcpy(to, from, bytes);
+#elif LANES == 16
+  for (size_t i = 0; i < bytes; i += 64)
+    _mm512_stream_si512(reinterpret_cast<__m512i*>(static_cast<char*>(to) + i),
+                        _mm512_load_si512(static_cast<const char*>(from) + i));
+#else
+  for (size_t i = 0; i < bytes; i += 16)
+    _mm_stream_si128(reinterpret_cast<__m128i*>(static_cast<char*>(to) + i),
+                     _mm_load_si128(reinterpret_cast<const __m128i*>(static_cast<const char*>(from) + i)));
+#endif
+}
+
+static inline void finish_streams() {
+#if LANES > 1
+  _mm_sfence();
+#endif
+}
+
 }  // namespace VITRAL_ISA
 }  // namespace vitral
