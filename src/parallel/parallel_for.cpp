@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <condition_variable>
 #include <exception>
 #include <mutex>
@@ -10,6 +11,19 @@
 
 namespace vitral {
 
+namespace {
+
+// Pieces of work follow each other closely, and a thread that sleeps can take milliseconds to be put on a
+// processor of its own again: so it first looks around for a while, giving way to whoever has work.
+template <class Condition>
+void wait_awake(const Condition& arrived) {
+  constexpr auto kWhile = std::chrono::microseconds(500);
+  const auto end = std::chrono::steady_clock::now() + kWhile;
+  while (!arrived() && std::chrono::steady_clock::now() < end) std::this_thread::yield();
+}
+
+}  // namespace
+
 struct ThreadPool::State {
   std::mutex mutex;
   std::condition_variable work_ready, work_done;
@@ -17,9 +31,9 @@ struct ThreadPool::State {
   const Body* body = nullptr;
   size_t count = 0;
   std::atomic<size_t> next{0};
-  size_t busy = 0;        // threads that have not finished the current piece of work
-  size_t generation = 0;  // of the current piece of work
-  bool quit = false;
+  std::atomic<size_t> busy{0};        // threads that have not finished the current piece of work
+  std::atomic<size_t> generation{0};  // of the current piece of work
+  std::atomic<bool> quit{false};
   std::exception_ptr error;
 
   void claim(size_t worker) {
@@ -35,6 +49,7 @@ struct ThreadPool::State {
   void run(size_t worker) {
     size_t seen = 0;
     for (;;) {
+      wait_awake([&] { return quit || generation != seen; });
       {
         std::unique_lock<std::mutex> lock(mutex);
         work_ready.wait(lock, [&] { return quit || generation != seen; });
@@ -81,6 +96,7 @@ void ThreadPool::parallel_for(size_t count, const Body& body) {
   }
   s.work_ready.notify_all();
   s.claim(0);
+  wait_awake([&] { return s.busy == 0; });
   std::unique_lock<std::mutex> lock(s.mutex);
   s.work_done.wait(lock, [&] { return s.busy == 0; });
   if (s.error) std::rethrow_exception(s.error);

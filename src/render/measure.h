@@ -23,8 +23,8 @@ void simplify(Scene& scene, Camera& camera);
 // Makes every surface a perfect mirror.
 void make_mirrors(Scene& scene);
 
-// How often something is run by the clock. Before that it runs once to warm up. No further run is
-// begun after `enough_seconds`; a warm-up that took as long is counted as a run.
+// How often something is run by the clock. Before that it runs to warm up, once or for a tenth of a second.
+// No further run is begun after `enough_seconds`; a warm-up that took as long is counted as a run.
 struct Runs {
   int repeat = 5;  // >= 1
   double enough_seconds = std::numeric_limits<double>::infinity();

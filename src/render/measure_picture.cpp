@@ -9,6 +9,9 @@
 namespace vitral {
 namespace {
 
+// A warm-up goes on for so long: until the system has spread the threads over the processors.
+constexpr double kWarmMs = 100;
+
 double milliseconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
@@ -48,10 +51,13 @@ std::vector<double> time_runs(const Runs& runs, const char* name, const std::fun
   double spent = 0;
   for (int i = 0; i <= runs.repeat; ++i) {
     if (runs.on_progress) runs.on_progress({name, static_cast<double>(i) / (runs.repeat + 1), 0});
-    const auto start = std::chrono::steady_clock::now();
-    run();
-    const double took = milliseconds_since(start);
-    spent += took;
+    double took = 0;
+    do {
+      const auto start = std::chrono::steady_clock::now();
+      run();
+      took = milliseconds_since(start);
+      spent += took;
+    } while (i == 0 && spent < kWarmMs);
     const bool enough = spent >= runs.enough_seconds * 1e3;
     if (i > 0 || enough) ms.push_back(took);
     if (enough) break;
