@@ -58,6 +58,10 @@ constexpr const char* kProject =
     "<pass class='trace'><shadows/><ambientOcclusion samples='4' distance='0.5' exponent='1.6'/></pass>"
     "</pipeline></pipelines></project>";
 
+// What the raster pass says besides.
+const Words kRasterKeys{"transform_ms",  "setup_ms",      "bin_ms",          "fill_ms",
+                        "attributes_ms", "mpixels_per_s", "mtriangles_per_s"};
+
 Words joined(Words words, const Words& more) {
   words.insert(words.end(), more.begin(), more.end());
   return words;
@@ -132,6 +136,7 @@ TEST_F(Bench, PrintsTheDocumentedJson) {
   for (const Json& pass : report["passes"].items) {
     Words keys{"name", "ms_median", "ms_min", "rays", "mrays_per_s"};
     if (pass["name"].text == "build") keys.push_back("bytes");
+    if (pass["name"].text == "raster") keys = joined(keys, kRasterKeys);
     EXPECT_EQ(pass.keys, keys);
     EXPECT_LE(pass["ms_min"].number, pass["ms_median"].number);
     EXPECT_GE(pass["ms_min"].number, 0);
@@ -139,6 +144,35 @@ TEST_F(Bench, PrintsTheDocumentedJson) {
     EXPECT_NEAR(pass["mrays_per_s"].number, expected, 1e-9 * expected) << pass["name"].text;
   }
   EXPECT_GT(report["passes"].items[1]["bytes"].number, 0);
+}
+
+// The parts of one run are parts of it.
+TEST_F(Bench, TakesTheRasterPassApart) {
+  for (const char* layout : {"full", "min"}) {
+    const Json report = json("plate.obj", kAtThePlate, {"--effects", "none", "--layout", layout});
+    EXPECT_EQ(names_of(report["passes"]), (Words{"load", "build", "raster", "resolve", "frame"}));
+    const Json& raster = report["passes"].items[2];
+    double sum = 0;
+    for (size_t i = 0; i < 5; ++i) {
+      EXPECT_GE(raster[kRasterKeys[i]].number, 0) << kRasterKeys[i];
+      sum += raster[kRasterKeys[i]].number;
+    }
+    const double ms = raster["ms_median"].number;
+    EXPECT_GT(sum, 0);
+    EXPECT_LE(sum, ms * 1.000001);
+    EXPECT_NEAR(raster["mpixels_per_s"].number * ms, 72 * 56 * 1e-3, 1e-6);
+    EXPECT_NEAR(raster["mtriangles_per_s"].number * ms, 4 * 1e-3, 1e-9);
+    EXPECT_GT(report["checks"]["covered_pixels"].number, 500);
+    EXPECT_LT(report["checks"]["covered_pixels"].number, 72 * 56);
+  }
+}
+
+TEST_F(Bench, LayoutsAreTheRasterizers) {
+  const Finished traced = run({"bench", "floor.obj", "--layout", "min", "--primary", "trace"});
+  EXPECT_EQ(traced.code, 2);
+  EXPECT_NE(traced.err.find("--layout"), std::string::npos) << traced.err;
+  EXPECT_EQ(run({"bench", "floor.obj", "--layout", "min", "--report"}).code, 2);
+  EXPECT_EQ(run({"bench", "floor.obj", "--layout", "medium"}).code, 2);
 }
 
 TEST_F(Bench, HasThePassesThatAreOn) {

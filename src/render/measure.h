@@ -23,7 +23,7 @@ void simplify(Scene& scene, Camera& camera);
 // Makes every surface a perfect mirror.
 void make_mirrors(Scene& scene);
 
-// How often something is run by the clock. Before that it runs to warm up, once or for a tenth of a second.
+// How often something is run by the clock. Before that it runs to warm up, once or for 30 ms.
 // No further run is begun after `enough_seconds`; a warm-up that took as long is counted as a run.
 struct Runs {
   int repeat = 5;  // >= 1

@@ -10,7 +10,7 @@ namespace vitral {
 namespace {
 
 // A warm-up goes on for so long: until the system has spread the threads over the processors.
-constexpr double kWarmMs = 100;
+constexpr double kWarmMs = 30;
 
 double milliseconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
