@@ -1,6 +1,7 @@
 // The table of entry points that every instruction set exports, and what they take.
 #pragma once
 #include "kdtree/kdtree.h"
+#include "kernels/footprint.h"
 #include "kernels/layout.h"
 #include "kernels/packet.h"
 #include "kernels/points.h"
@@ -39,6 +40,11 @@ struct Kernels {
   // points' keys.
   void (*hit_surfaces)(const SurfaceView& scene, const RayPacket& rays, const HitPacket& hits,
                        const OffsetRule& offset, SurfacePacket& out);
+
+  // What the rays see of textures around their hits, in `lanes`; `points` are those of surface_points.
+  void (*texture_footprints)(const KdTriangle* triangles, const HitPacket& hits, const PointPacket& points,
+                             const RayWidths& widths, const TexturedLanes& textures, uint64_t lanes,
+                             Footprints& out);
 
   // One ray from every live point, mirrored about the geometric normal; sets rays.live.
   void (*mirror_rays)(const PointPacket& points, RayPacket& rays);

@@ -17,6 +17,7 @@ const Kernels kTable = {
     trace_any,
     surface_points,
     hit_surfaces,
+    texture_footprints,
     mirror_rays,
     shadow_rays,
     trace_shadows,

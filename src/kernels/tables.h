@@ -14,6 +14,9 @@ uint64_t surface_points(const KdTriangle* triangles, const RayPacket& rays, cons
                         const OffsetRule& offset, PointPacket& out);
 void hit_surfaces(const SurfaceView& scene, const RayPacket& rays, const HitPacket& hits,
                   const OffsetRule& offset, SurfacePacket& out);
+void texture_footprints(const KdTriangle* triangles, const HitPacket& hits, const PointPacket& points,
+                        const RayWidths& widths, const TexturedLanes& textures, uint64_t lanes,
+                        Footprints& out);
 void mirror_rays(const PointPacket& points, RayPacket& rays);
 void shadow_rays(const Light& light, const PointPacket& points, RayPacket& rays);
 void trace_shadows(const KdView& tree, const Light& light, GlassRule glass, const PointPacket* const* points,

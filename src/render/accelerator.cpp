@@ -1,5 +1,6 @@
 #include "render/accelerator.h"
 
+#include "math/footprint.h"
 #include "render/texture.h"
 #include "vitral/error.h"
 
@@ -40,16 +41,19 @@ CutOuts make_cut_outs(const Scene& scene) {
   return {cut_out_is_there, &scene};
 }
 
-Vec2 texcoord_at(const Mesh& mesh, uint32_t triangle, float u, float v) {
-  if (mesh.triangle_texcoords.empty()) return {0, 0};
-  Vec2 corner[3];
+CornerTexcoords corner_texcoords(const Mesh& mesh, uint32_t triangle) {
+  CornerTexcoords corner{};
+  if (mesh.triangle_texcoords.empty()) return corner;
   for (size_t k = 0; k < 3; ++k) {
     const uint32_t i = mesh.triangle_texcoords[triangle][k];
-    corner[k] = i == kNoIndex ? Vec2{0, 0} : mesh.texcoords[i];
+    if (i != kNoIndex) corner[k] = mesh.texcoords[i];
   }
-  const float w = (1 - u) - v;
-  return {(corner[0].x * w + corner[1].x * u) + corner[2].x * v,
-          (corner[0].y * w + corner[1].y * u) + corner[2].y * v};
+  return corner;
+}
+
+Vec2 texcoord_at(const Mesh& mesh, uint32_t triangle, float u, float v) {
+  const CornerTexcoords c = corner_texcoords(mesh, triangle);
+  return {at_barycentrics(c[0].x, c[1].x, c[2].x, u, v), at_barycentrics(c[0].y, c[1].y, c[2].y, u, v)};
 }
 
 void gather_triangles(const Scene& scene, ThreadPool& pool, Accelerator& accelerator) {

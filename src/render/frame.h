@@ -159,10 +159,22 @@ struct Lit {
 void light_surfaces(const FrameContext& frame, const SurfacePacket* const* surfaces, int count,
                     PassTally& tally, Lit* out);
 
+// The bundle of rays that a pixel stands for: its diameter where the ray starts, and how much that grows with
+// distance. Either may be negative: the bundle runs together, or has run through a focus. After
+// Akenine-Moller, Crassin, Boksansky, Belcour, Panteleev and Wright, "Improved Shader and Texture Level of
+// Detail Using Ray Cones", JCGT 10(1), 2021.
+struct Cone {
+  float diameter = 0, spread = 0;
+};
+static inline float diameter_at(const Cone& c, float distance) {
+  return c.diameter + c.spread * distance;
+}
+
 // A secondary ray on its way, and what its light will be multiplied with.
 enum class PathKind : uint8_t { reflection, refraction };
 struct Path {
   Vec3 origin, direction, weight;
+  Cone cone;
   uint32_t key;    // seeds its random numbers
   uint16_t pixel;  // in the tile
   uint8_t depth;   // 1: spawned at the camera's hit
@@ -171,7 +183,7 @@ struct Path {
 };
 
 // glass.cpp: the camera's rays to the points of a block whose corner is (x, y) in its tile, as paths.
-void begin_paths(const PointPacket& points, int x, int y, Path* paths);
+void begin_paths(const FrameContext& frame, const PointPacket& points, int x, int y, Path* paths);
 
 // glass.cpp: the reflected and refracted rays that start at a surface. Lane i belongs to parents[i].
 void spawn_paths(const FrameContext& frame, const SurfacePacket& surfaces, const Path* parents,

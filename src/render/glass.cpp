@@ -2,6 +2,7 @@
 // 1980, unrolled into generations. All paths of a generation in a tile are sorted by kind and by the
 // signs of their directions, packed 64 at a time, traced, lit like any other surface, and spawn the
 // next generation. So packets stay full although paths end at different depths.
+#include "math/footprint.h"
 #include "math/fresnel.h"
 #include "math/random.h"
 #include "render/frame.h"
@@ -49,9 +50,36 @@ Split split_light(const Material& m, const Settings& settings, float cos_i, Side
   return s;
 }
 
+// How fast the shading normal turns along the surface, 1/radius: half the divergence of the corners' normals
+// over the triangle; greater than 0 where the side that is seen bulges out.
+float curvature(const Mesh& mesh, uint32_t triangle, const Vec3& geometric, const Vec3& shading) {
+  if (mesh.triangle_normals.empty()) return 0;
+  const Corners& at = mesh.triangle_normals[triangle];
+  if (at[0] == kNoIndex || at[1] == kNoIndex || at[2] == kNoIndex) return 0;
+  const Vec3 &a = mesh.normals[at[0]], &b = mesh.normals[at[1]], &c = mesh.normals[at[2]];
+  const Corners& corner = mesh.triangles[triangle];
+  const Vec3& from = mesh.positions[corner[0]];
+  const BarycentricSlopes<float> slopes =
+      barycentric_slopes(mesh.positions[corner[1]] - from, mesh.positions[corner[2]] - from, geometric);
+  const float half = 0.5f * (dot(slopes.b, b - a) + dot(slopes.c, c - a));
+  if (!(absolute(half) < 1e9f)) return 0;
+  return dot((a + b) + c, shading) < 0 ? -half : half;
+}
+
+// What the turning of the normal across the cone's section adds to the spread, besides Snell's part: the
+// mirrored direction is d + 2 cos_i n, the refracted one eta d + (eta cos_i - cos_t) n. Of a mirror
+// 2 instead of 2 cos_i is the mean of along and across the plane of incidence.
+Cone reflected_cone(const Cone& here, float turning) {
+  return {here.diameter, here.spread + 2 * turning * here.diameter};
+}
+Cone refracted_cone(const Cone& here, float turning, float eta, float cos_i, float cos_t) {
+  return {here.diameter, eta * here.spread + (eta * cos_i - cos_t) * turning * here.diameter};
+}
+
 Path child_of(const Path& parent, PathKind kind, const Vec3& origin, const Vec3& direction,
-              const Vec3& weight) {
+              const Vec3& weight, const Cone& cone) {
   Path p = parent;
+  p.cone = cone;
   p.origin = origin;
   p.direction = direction;
   p.weight = parent.weight * weight;
@@ -72,23 +100,27 @@ void spawn_at(const FrameContext& frame, const SurfacePacket& s, int lane, const
   Vec3 n = get(s.points.nx, s.points.ny, s.points.nz, lane);
   if (!(dot(n, incoming) < -1e-4f)) n = geometric;
   const float cos_i = least(greatest(-dot(n, incoming), 0.0f), 1.0f);
+  const Cone here{diameter_at(parent.cone, length(position - parent.origin)), parent.cone.spread};
+  const float turning = curvature(frame.scene.mesh, s.triangle[lane], geometric, n);
   const Split split = split_light(m, frame.settings, cos_i, s.back >> lane & 1 ? Side::back : Side::front);
 
   if (luminance(parent.weight * split.reflected) >= frame.least_importance) {
     Vec3 d = reflect(incoming, n);
     if (!(dot(d, geometric) > 0)) d = reflect(d, geometric);
     out.push_back(child_of(parent, PathKind::reflection, position + geometric * s.points.offset[lane],
-                           normalize(d), split.reflected));
+                           normalize(d), split.reflected, reflected_cone(here, turning)));
   }
   if (luminance(parent.weight * split.refracted) >= frame.least_importance) {
     Vec3 d = incoming;
+    Cone cone = here;
     if (split.eta != 1) {
       const float cos_t = square_root(greatest(refracted_cosine_squared(cos_i, split.eta), 0.0f));
       d = refract(incoming, n, split.eta, cos_i, cos_t);
       if (!(dot(d, geometric) < 0)) d = reflect(d, geometric);
+      cone = refracted_cone(here, turning, split.eta, cos_i, cos_t);
     }
     out.push_back(child_of(parent, PathKind::refraction, position - geometric * s.points.offset[lane],
-                           normalize(d), split.refracted));
+                           normalize(d), split.refracted, cone));
   }
 }
 
@@ -130,7 +162,10 @@ uint64_t trace_packet(const FrameContext& frame, const Path* paths, int count, s
   }
   {
     const PassTimer timer(tally, Pass::shade);
-    make_surfaces(frame, rays, hits, surfaces);
+    float diameters[kPacketSize];
+    for (int lane = 0; lane < kPacketSize; ++lane)
+      diameters[lane] = diameter_at(paths[lane < count ? lane : 0].cone, hits.t[lane]);
+    make_surfaces(frame, rays, hits, surfaces, diameters);
   }
   Lit lit;
   const SurfacePacket* const one = &surfaces;
@@ -153,9 +188,13 @@ uint64_t trace_packet(const FrameContext& frame, const Path* paths, int count, s
 
 }  // namespace
 
-void begin_paths(const PointPacket& points, int x, int y, Path* paths) {
+void begin_paths(const FrameContext& frame, const PointPacket& points, int x, int y, Path* paths) {
   for (int lane = 0; lane < kPacketSize; ++lane) {
     paths[lane] = {};
+    paths[lane].origin = frame.camera.origin;
+    paths[lane].direction = -get(points.vx, points.vy, points.vz, lane);
+    // A pixel's side is `step` at depth 1: at distance 1 it is less by the cosine towards the axis.
+    paths[lane].cone = {0, frame.camera.step * dot(paths[lane].direction, frame.camera.forward)};
     paths[lane].weight = {1, 1, 1};
     paths[lane].key = points.key[lane];
     paths[lane].pixel = static_cast<uint16_t>((y + lane / kBlockSide) * kTileSide + x + lane % kBlockSide);

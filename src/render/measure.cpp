@@ -197,7 +197,7 @@ PassTimes measure_paths(Picture& p, const FrameContext& frame, const char* name,
         const SurfacePacket& surfaces = blocks[i].surfaces;
         if (surfaces.points.live == 0) continue;
         Path camera_paths[kPacketSize];
-        begin_paths(surfaces.points, blocks[i].x - blocks->x, blocks[i].y - blocks->y, camera_paths);
+        begin_paths(frame, surfaces.points, blocks[i].x - blocks->x, blocks[i].y - blocks->y, camera_paths);
         spawn_paths(frame, surfaces, camera_paths, s.paths.current);
       }
       s.counts.hits += trace_paths(frame, s.paths, s.tally, {s.color.data(), nullptr, nullptr, nullptr});
@@ -260,6 +260,7 @@ Measurement measure_passes(const Scene& scene, const Camera& camera, const Setti
   });
   build.bytes = tree_bytes(accelerator.all) + tree_bytes(accelerator.glass);
   out.passes.push_back(build);
+  accelerator.mip_maps = make_mip_maps(scene, pool);
 
   FrameContext frame = make_context(scene, accelerator, camera, settings);
   if (rules == RayRules::anchor) {

@@ -47,6 +47,7 @@ FramesMeasured measure_frames(const Scene& scene, const std::vector<FrameJob>& j
   if (runs.on_progress) runs.on_progress({"build", 0, 0});
   Accelerator accelerator;
   build_accelerator(scene, pool, control, accelerator);
+  accelerator.mip_maps = make_mip_maps(scene, pool);
   out.isa = make_context(scene, accelerator, jobs.front().camera, jobs.front().settings).kernels.isa;
   out.threads = static_cast<int>(pool.workers());
   for (const FrameJob& job : jobs)

@@ -22,7 +22,8 @@ RasterView setup_raster(const FrameContext& frame, const Rectangle& crop, Thread
   transform_vertices(frame.kernels.front_end.project_vertices, frame.camera, frame.settings.width,
                      frame.settings.height, crop, mesh, for_each, raster);
   const Clock::time_point transformed = Clock::now();
-  setup_triangles(frame.kernels.front_end.setup_triangles, mesh, holes ? triangles : nullptr, for_each, raster);
+  setup_triangles(frame.kernels.front_end.setup_triangles, mesh, holes ? triangles : nullptr, for_each,
+                  raster);
   const Clock::time_point set_up = Clock::now();
   bin_triangles(for_each, raster);
   times = {seconds_between(start, transformed), seconds_between(transformed, set_up),

@@ -148,6 +148,7 @@ Frame render(const Scene& scene, const Camera& camera, const Settings& settings,
   } else {
     gather_triangles(scene, pool, accelerator);
   }
+  accelerator.mip_maps = make_mip_maps(scene, pool);
   const double build_seconds = seconds_since(start);
   Frame frame = render_frame(scene, accelerator, camera, settings, pool, control);
   frame.stats.build_seconds = build_seconds;

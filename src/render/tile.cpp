@@ -126,7 +126,7 @@ void render_tile(const FrameContext& frame, const Rectangle& crop, int tile_x, i
   for (int i = 0; i < count; ++i) {
     const SurfacePacket& surfaces = *seen[i];
     Path camera_paths[kPacketSize];
-    begin_paths(surfaces.points, corner_x[i] - tile_x, corner_y[i] - tile_y, camera_paths);
+    begin_paths(frame, surfaces.points, corner_x[i] - tile_x, corner_y[i] - tile_y, camera_paths);
     for (uint64_t left = surfaces.points.live; left != 0; left &= left - 1) {
       const int lane = __builtin_ctzll(left);
       ++worker.covered;
