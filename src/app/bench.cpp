@@ -88,6 +88,7 @@ int run_bench(const Options& options) {
   load_job(job, options);
   report_warnings(job.warnings, options);
   if (options.anchor) simplify(job.project.scene, job.camera);
+  if (options.layout) fill_cut_outs(job.project.scene);
   if (options.mirror_all) make_mirrors(job.project.scene);
   print(measure(job, options));
   return kDone;

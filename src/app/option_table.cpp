@@ -232,7 +232,8 @@ constexpr OptionRow kTable[] = {
     {kWork, "--layout", "", "NAME", kBench,
      "what the raster pass writes for each pixel: full (position, normal,\n"
      "flat albedo, material, triangle, depth) or min (packed normal,\n"
-     "material, depth) (full)",
+     "material, depth), with cut-outs taken as whole, so that another\n"
+     "rasterizer can be asked for the same (full, with their holes)",
      [](O& o, const R& r, const S& v) {
        o.layout = one_of(r, v, {Layout::full, Layout::min});
      }},

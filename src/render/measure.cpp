@@ -220,11 +220,13 @@ PassTimes measure_resolve(Picture& p, const Image<Vec3>& radiance) {
 
 }  // namespace
 
+void fill_cut_outs(Scene& scene) {
+  for (Material& m : scene.materials) m.opacity_map = kNoTexture;
+}
+
 void simplify(Scene& scene, Camera& camera) {
-  for (Material& m : scene.materials) {
-    m.optics = Optics::opaque;
-    m.opacity_map = kNoTexture;
-  }
+  fill_cut_outs(scene);
+  for (Material& m : scene.materials) m.optics = Optics::opaque;
   scene.mesh.triangle_normals.clear();
   std::erase_if(scene.lights, [](const Light& light) { return light.kind != Light::Kind::directional; });
   const float diagonal = length(extent(bounds(scene.mesh)));

@@ -20,6 +20,9 @@ enum class RayRules { scene, anchor };
 // directional lights only, everything in view.
 void simplify(Scene& scene, Camera& camera);
 
+// Makes cut-outs whole: other rasterizers' G-buffers know no holes.
+void fill_cut_outs(Scene& scene);
+
 // Makes every surface a perfect mirror.
 void make_mirrors(Scene& scene);
 
