@@ -1,8 +1,9 @@
 // The triangles that a register of points lies on, and what those points are like.
 //
 // Neighbouring pixels mostly see the same triangle: what depends on it alone is then computed once, as plain
-// numbers, and kept for the next register. Otherwise every lane's triangle is gathered and all is computed
-// lane by lane. Both ways are the same roundings in the same order.
+// numbers, and kept for the next register. Registers that see several look them up in a table of the
+// block's, if these are no more than a register has lanes. Otherwise every lane's triangle is gathered and
+// all is computed lane by lane. All ways are the same roundings in the same order.
 #pragma once
 #include "kernels/points.h"
 #include "kernels/shading.h"
@@ -94,22 +95,93 @@ static inline void make_facet(const SurfaceView& scene, uint32_t triangle, const
   return f;
 }
 
-// Calls body(facet, number) for the triangles of a register of points, at least one of which is `seen`. The
-// lanes that are not get another one's triangle. `number` is the triangle of all lanes, or kNoTriangle.
+// The triangles of a block, each once.
+struct FacetTable {
+  enum class State { unknown, made, too_many } state = State::unknown;
+  Facet<Float, Mask> facet;
+  alignas(64) uint32_t place[kPacketSize];  // of each pixel's triangle in the table
+};
+
+// Many small triangles lie scattered in memory: all are asked for before the first is used.
+static inline void prefetch_facets(const SurfaceView& scene, const uint32_t* numbers) {
+  for (int i = 0; i < kPacketSize; ++i) {
+    if (numbers[i] == kNoTriangle) continue;
+    __builtin_prefetch(scene.triangles + numbers[i]);
+    if (scene.normal_indices != nullptr) __builtin_prefetch(scene.normal_indices + size_t{3} * numbers[i]);
+  }
+}
+
+// `numbers` are those of the block's pixels; kNoTriangle counts as the triangle of some other pixel.
+[[gnu::noinline]] static void make_table(const SurfaceView& scene, const uint32_t* numbers, const Vec3& eye,
+                                         FacetTable& table) {
+  uint64_t left = 0;
+  for (int g = 0; g < kPacketSize; g += kLanes) {
+    left |= static_cast<uint64_t>(bits(invert(load(numbers + g) == Uint(kNoTriangle)))) << g;
+    store(table.place + g, Uint(0));
+  }
+  alignas(64) uint32_t different[kLanes] = {};
+  uint32_t count = 0;
+  table.state = FacetTable::State::too_many;
+  const int all = __builtin_popcountll(left);
+  for (; left != 0; ++count) {
+    // Half of the places taken and not half of the pixels: it will not do.
+    if (count == kLanes || (count == kLanes / 2 && 2 * __builtin_popcountll(left) > all)) {
+      prefetch_facets(scene, numbers);
+      return;
+    }
+    const uint32_t number = numbers[__builtin_ctzll(left)];
+    different[count] = number;
+    for (int g = 0; g < kPacketSize; g += kLanes) {
+      const Mask same = load(numbers + g) == Uint(number);
+      left &= ~(static_cast<uint64_t>(bits(same)) << g);
+      store(table.place + g, select(same, Uint(count), load(table.place + g)));
+    }
+  }
+  for (uint32_t i = count; i < kLanes; ++i) different[i] = different[0];
+  table.facet = gather_facet(scene, different, eye);
+  table.state = FacetTable::State::made;
+}
+
+static inline Vec3T<Float> pick(const Vec3T<Float>& table, Uint place) {
+  return {pick(table.x, place), pick(table.y, place), pick(table.z, place)};
+}
+
+[[gnu::always_inline]] static inline Facet<Float, Mask> look_up(const FacetTable& table, int g) {
+  const Facet<Float, Mask>& f = table.facet;
+  const Uint place = load(table.place + g);
+  return {pick(f.a, place),
+          pick(f.ab, place),
+          pick(f.ac, place),
+          {pick(f.from_eye[0], place), pick(f.from_eye[1], place), pick(f.from_eye[2], place)},
+          pick(f.normal, place),
+          pick(f.magnitude, place),
+          {pick(f.corner_normal[0], place), pick(f.corner_normal[1], place), pick(f.corner_normal[2], place)},
+          pick(select(f.smooth, Uint(1), Uint(0)), place) == Uint(1)};
+}
+
+// Calls body(facet, number) for the triangles of a register of points from g on, at least one of which is
+// `seen`. The lanes that are not get another one's triangle. `number` is the triangle of all lanes, or
+// kNoTriangle.
 template <class Body>
 [[gnu::always_inline]] static inline void with_facets(const SurfaceView& scene, const Vec3& eye,
-                                                      const uint32_t* numbers, Mask seen, OneFacet& one,
-                                                      const Body& body) {
+                                                      const uint32_t* block, int g, Mask seen, OneFacet& one,
+                                                      FacetTable& table, const Body& body) {
+  const uint32_t* numbers = block + g;
   const uint32_t first = numbers[__builtin_ctz(bits(seen))];
   const Uint number = select(seen, load(numbers), Uint(first));
   if (bits(number == Uint(first)) == kAllLanes) {
     make_facet(scene, first, eye, one);
     body(broadcast(one.facet), first);
-  } else {
+    return;
+  }
+  if (table.state == FacetTable::State::unknown) make_table(scene, block, eye, table);
+  if (table.state == FacetTable::State::too_many) {
     alignas(64) uint32_t valid[kLanes];
     store(valid, number);
-    body(gather_facet(scene, valid, eye), kNoTriangle);
+    table.facet = gather_facet(scene, valid, eye);
+    store(table.place + g, lane_numbers());
   }
+  body(look_up(table, g), kNoTriangle);
 }
 
 // Exactly whether the front looks away from a viewer who sees the point along `direction`; `viewer` is the
@@ -192,6 +264,7 @@ template <class Body, class Nothing>
 [[gnu::always_inline]] static inline void for_each_visible(const SeenBlock& block, const Nothing& nothing,
                                                            const Body& body) {
   OneFacet one;
+  FacetTable table;
   for (int g = 0; g < kPacketSize; g += kLanes) {
     const Mask seen = invert(load(block.numbers + g) == Uint(kNoTriangle));
     if (!any(seen)) {
@@ -199,7 +272,7 @@ template <class Body, class Nothing>
       continue;
     }
     const Vec3T<Float> direction = pixel_directions(block.camera, block.x, block.y, g);
-    with_facets(block.scene, block.camera.origin, block.numbers + g, seen, one,
+    with_facets(block.scene, block.camera.origin, block.numbers, g, seen, one, table,
                 [&](const Facet<Float, Mask>& facet, uint32_t number) VITRAL_INLINED {
                   body(g, seen, facet, visible_points(block, g, facet, direction, seen), direction, number);
                 });

@@ -36,9 +36,6 @@ struct Corners {
   Uint outside_any, outside_all;
 };
 
-// Vertices lie scattered in memory: they are asked for this many triangles before their turn.
-constexpr uint32_t kAhead = 3 * 16;
-
 // The corners of triangles [first, first + kLanes), as far as they lie before `end`; in the other lanes
 // some triangle's.
 Corners load_corners(const SetupInput& in, uint32_t first, uint32_t end) {
@@ -121,7 +118,12 @@ void sort_out(const SetupInput& in, uint32_t begin, uint32_t end, Queue& small, 
 
     const Int longest = Int(kLongestSide / kSubpixels - 2);
     const Mask fits = both(box.x1 - box.x0 < longest, box.y1 - box.y0 < longest);
-    const Int area = doubled_area<Int>(x, y);
+    Int side_x[3], side_y[3];  // as seen from corner 0; 0 in lanes that do not fit, which would overflow
+    for (int k = 0; k < 3; ++k) {
+      side_x[k] = select(fits, x[k] - x[0], Int(0));
+      side_y[k] = select(fits, y[k] - y[0], Int(0));
+    }
+    const Int area = doubled_area<Int>(side_x, side_y);
     const Mask ordinary = both(both(near_enough, fits), invert(area == Int(0)));
 
     const Mask large = either(clipped, both(near_enough, invert(fits)));

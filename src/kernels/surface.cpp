@@ -67,6 +67,7 @@ template <class Body>
 [[gnu::always_inline]] inline void for_each_hit(const SurfaceView& scene, const RayPacket& rays,
                                                 const HitPacket& hits, PointPacket& out, const Body& body) {
   OneFacet one;
+  FacetTable table;
   out.live = 0;
   for (int g = 0; g < kPacketSize; g += kLanes) {
     const Mask met = both(invert(load(hits.triangle + g) == Uint(kNoTriangle)), mask_of_bits(rays.live >> g));
@@ -75,7 +76,7 @@ template <class Body>
       store_nothing(g, out);
       continue;
     }
-    with_facets(scene, Vec3{0, 0, 0}, hits.triangle + g, met, one,
+    with_facets(scene, Vec3{0, 0, 0}, hits.triangle, g, met, one, table,
                 [&](const Facet<Float, Mask>& facet, uint32_t number)
                     VITRAL_INLINED { body(g, met, facet, number); });
   }

@@ -82,5 +82,26 @@ static inline void gather3(const float* table, size_t stride, const uint32_t* ro
 
 #endif
 
+// Lane i gets table[i's index], an index below LANES.
+#if LANES == 1
+static inline Float pick(Float table, Uint) {
+  return table;
+}
+#else
+static inline Float pick(Float table, Uint index) {
+#if LANES == 16
+  return FloatVector(_mm512_maskz_permutexvar_ps(0xffff, __m512i(index.v), __m512(table.v)));
+#elif LANES == 8
+  return FloatVector(_mm256_permutevar8x32_ps(__m256(table.v), __m256i(index.v)));
+#else
+  const UintVector i = index.v;
+  return FloatVector{table.v[i[0]], table.v[i[1]], table.v[i[2]], table.v[i[3]]};
+#endif
+}
+#endif
+static inline Uint pick(Uint table, Uint index) {
+  return as_bits(pick(from_bits(table), index));
+}
+
 }  // namespace VITRAL_ISA
 }  // namespace vitral
