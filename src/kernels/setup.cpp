@@ -11,6 +11,7 @@
 #include "raster/coverage.h"
 #include "raster/project.h"
 #include "raster/raster.h"
+#include "simd/gather.h"
 #include "simd/simd.h"
 
 namespace vitral {

@@ -81,14 +81,6 @@ static inline Mask mask_of_bits(uint64_t b) {
 static inline Uint lane_numbers() {
   return 0;
 }
-template <class Address>
-static inline void load_records(const Address& address, Float out[4]) {
-  std::memcpy(out, address(0), 4 * sizeof(float));
-}
-template <class Address>
-static inline void store_records(const Address& address, const Float in[4]) {
-  std::memcpy(address(0), in, 4 * sizeof(float));
-}
 
 #else
 
@@ -493,69 +485,6 @@ static inline void store(int32_t* p, Int a) {
 }
 static inline void store(uint32_t* p, Uint a) {
   std::memcpy(p, &a.v, sizeof a.v);
-}
-
-// Records of four numbers, one for each lane at address(lane), to four registers of their components and
-// back. A row holds the records of every fourth lane; within 16 bytes of all rows it is a 4x4 matrix.
-struct Rows {
-#if LANES == 16
-  __m512 row[4];
-#elif LANES == 8
-  __m256 row[4];
-#else
-  __m128 row[4];
-#endif
-};
-static inline void transpose(Rows& r) {
-#if LANES == 16
-  const __m512 a = _mm512_maskz_unpacklo_ps(0xffff, r.row[0], r.row[1]);
-  const __m512 b = _mm512_maskz_unpackhi_ps(0xffff, r.row[0], r.row[1]);
-  const __m512 c = _mm512_maskz_unpacklo_ps(0xffff, r.row[2], r.row[3]);
-  const __m512 d = _mm512_maskz_unpackhi_ps(0xffff, r.row[2], r.row[3]);
-  r.row[0] = _mm512_maskz_shuffle_ps(0xffff, a, c, 0x44);
-  r.row[1] = _mm512_maskz_shuffle_ps(0xffff, a, c, 0xee);
-  r.row[2] = _mm512_maskz_shuffle_ps(0xffff, b, d, 0x44);
-  r.row[3] = _mm512_maskz_shuffle_ps(0xffff, b, d, 0xee);
-#elif LANES == 8
-  const __m256 a = _mm256_unpacklo_ps(r.row[0], r.row[1]), b = _mm256_unpackhi_ps(r.row[0], r.row[1]);
-  const __m256 c = _mm256_unpacklo_ps(r.row[2], r.row[3]), d = _mm256_unpackhi_ps(r.row[2], r.row[3]);
-  r.row[0] = _mm256_shuffle_ps(a, c, 0x44);
-  r.row[1] = _mm256_shuffle_ps(a, c, 0xee);
-  r.row[2] = _mm256_shuffle_ps(b, d, 0x44);
-  r.row[3] = _mm256_shuffle_ps(b, d, 0xee);
-#else
-  _MM_TRANSPOSE4_PS(r.row[0], r.row[1], r.row[2], r.row[3]);
-#endif
-}
-template <class Address>
-static inline void load_records(const Address& address, Float out[4]) {
-  Rows r;
-  for (int i = 0; i < 4; ++i) {
-    const auto record = [&](int lane) { return _mm_loadu_ps(address(lane)); };
-#if LANES == 16
-    r.row[i] = _mm512_zextps128_ps512(record(i));
-    r.row[i] = _mm512_maskz_insertf32x4(0xffff, r.row[i], record(i + 4), 1);
-    r.row[i] = _mm512_maskz_insertf32x4(0xffff, r.row[i], record(i + 8), 2);
-    r.row[i] = _mm512_maskz_insertf32x4(0xffff, r.row[i], record(i + 12), 3);
-#elif LANES == 8
-    r.row[i] = _mm256_insertf128_ps(_mm256_zextps128_ps256(record(i)), record(i + 4), 1);
-#else
-    r.row[i] = record(i);
-#endif
-  }
-  transpose(r);
-  for (int i = 0; i < 4; ++i) out[i] = FloatVector(r.row[i]);
-}
-template <class Address>
-static inline void store_records(const Address& address, const Float in[4]) {
-  Rows r;
-  std::memcpy(r.row, in, sizeof r.row);
-  transpose(r);
-  for (int i = 0; i < 4; ++i) {
-    float lanes[LANES];
-    std::memcpy(lanes, &r.row[i], sizeof lanes);
-    for (int q = 0; q < LANES / 4; ++q) std::memcpy(address(4 * q + i), lanes + 4 * q, 4 * sizeof(float));
-  }
 }
 
 // Stores the lanes of the mask side by side from p on; up to LANES numbers there may be overwritten.
