@@ -24,6 +24,7 @@ namespace VITRAL_ISA {
 namespace {
 
 constexpr int kCellSide = 4;
+constexpr int kWindowSide = kCellSide * kCellSide;
 constexpr int kCellPixels = kCellSide * kCellSide;
 constexpr int kCellsAcross = kTileSide / kCellSide;
 constexpr int kCells = kCellsAcross * kCellsAcross;
@@ -106,14 +107,9 @@ struct CellMasks {
   uint32_t touched, inside;
 };
 
-// The window whose corner is the pixel (x, y) of the frame.
-CellMasks classify(const Filling& f, int x, int y, Window& w) {
+// The window whose corner is the pixel (x, y) of the frame, where the edge functions are `at_corner`.
+CellMasks classify(const Filling& f, const int32_t at_corner[3], int x, int y, Window& w) {
   const SetupTriangle& t = *f.triangle;
-  int32_t at_corner[3];
-  for (int k = 0; k < 3; ++k) {
-    const int next = k == 2 ? 0 : k + 1;
-    at_corner[k] = cut_off(make_edge(t.x[k], t.y[k], t.x[next], t.y[next], x, y).value);
-  }
   const InverseDepth<Double> plane{Double(t.across), Double(t.down), Double(t.at_0)};
   CellMasks masks{0, 0};
   for (int g = 0; g < kGroups; ++g) {
@@ -182,16 +178,53 @@ inline void fill_cell(const RasterView& view, const Filling& f, const Window& w,
   }
 }
 
+// How much an edge function grows within a square of pixels, at most.
+inline int64_t greatest_growth(const Edge& e, int side) {
+  return (int64_t{vitral::greatest(e.across, 0)} + vitral::greatest(e.down, 0)) * (side - 1);
+}
+
+// Whether the triangle lies behind all that the tile has. The float sums of the cells are off by a few 2^-24
+// of their terms, which the margin of 2^-20 covers.
+inline bool is_hidden(const SetupTriangle& t, const Tile& tile) {
+  constexpr double far_side = kTileSide - 1, margin = 1.0 / (1 << 20);
+  const InverseDepth<double> plane{t.across, t.down, t.at_0};
+  const double nearest =
+      at_center(plane, tile.x + (t.across > 0 ? far_side : 0.0), tile.y + (t.down > 0 ? far_side : 0.0));
+  const double terms =
+      vitral::absolute(nearest) + 2 * kTileSide * (vitral::absolute(t.across) + vitral::absolute(t.down));
+  return t.least < tile.least_of_all && nearest + terms * margin < static_cast<double>(tile.least_of_all);
+}
+
 void fill_triangle(const RasterView& view, const SetupTriangle& t, Tile& tile) {
   PixelBox box = centers_within(t.x, t.y);
   box = intersection({box.x0 - tile.x, box.y0 - tile.y, box.x1 - tile.x, box.y1 - tile.y}, tile.window);
   if (vitral::is_empty(box)) return;
+
+  // Most tiles and windows in the box of a large triangle lie outside an edge.
+  Edge edge[3];
+  for (int k = 0; k < 3; ++k) {
+    const int next = k == 2 ? 0 : k + 1;
+    edge[k] = make_edge(t.x[k], t.y[k], t.x[next], t.y[next], tile.x, tile.y);
+    if (edge[k].value + greatest_growth(edge[k], kTileSide) < 0) return;
+  }
+  if ((box.x1 - box.x0 > kWindowSide || box.y1 - box.y0 > kWindowSide) && is_hidden(t, tile)) return;
+
   const Filling f = make_filling(view, t);
   const int x1 = (box.x1 - 1) / kCellSide, y1 = (box.y1 - 1) / kCellSide;  // the last cells
   for (int y = box.y0 / kCellSide; y <= y1; y += kCellSide) {
     for (int x = box.x0 / kCellSide; x <= x1; x += kCellSide) {
+      int32_t at_corner[3];
+      bool outside = false;
+      for (int k = 0; k < 3; ++k) {
+        const Edge& e = edge[k];
+        const int64_t value =
+            e.value + int64_t{e.across} * (x * kCellSide) + int64_t{e.down} * (y * kCellSide);
+        outside |= value + greatest_growth(e, kWindowSide) < 0;
+        at_corner[k] = cut_off(value);
+      }
+      if (outside) continue;
       Window w;
-      const CellMasks masks = classify(f, tile.x + x * kCellSide, tile.y + y * kCellSide, w);
+      const CellMasks masks = classify(f, at_corner, tile.x + x * kCellSide, tile.y + y * kCellSide, w);
       const uint32_t columns = x1 - x >= 3 ? 0xffffu : 0x1111u * ((2u << (x1 - x)) - 1);
       const uint32_t rows = y1 - y >= 3 ? 0xffffu : (16u << (4 * (y1 - y))) - 1;
       for (uint32_t left = masks.touched & columns & rows; left != 0; left &= left - 1) {
