@@ -91,7 +91,7 @@ struct Options {
   const CutOuts* cut_outs = nullptr;
 };
 
-// Fills all tiles of a frame that is set up.
+// Fills the tiles of a frame that is set up, as far as they touch its window.
 inline Picture fill_frame(const Kernels& kernels, const Pinhole& camera, int width, int height,
                           const RasterFrame& frame, const Options& options = {}) {
   const RasterView view = make_view(frame, camera, options.triangles, options.cut_outs);
@@ -99,8 +99,9 @@ inline Picture fill_frame(const Kernels& kernels, const Pinhole& camera, int wid
   picture.triangle.assign(static_cast<size_t>(width * height), kNoTriangle);
   picture.inverse_depth.assign(picture.triangle.size(), 0.0f);
   const auto tile = std::make_unique<TileVisibility>();
-  for (int ty = 0; ty * kTileSide < height; ++ty) {
-    for (int tx = 0; tx * kTileSide < width; ++tx) {
+  const PixelBox& window = view.window;
+  for (int ty = window.y0 / kTileSide; ty * kTileSide < window.y1; ++ty) {
+    for (int tx = window.x0 / kTileSide; tx * kTileSide < window.x1; ++tx) {
       kernels.fill_tile(view, tx, ty, *tile);
       for (int y = 0; y < kTileSide; ++y) {
         for (int x = 0; x < kTileSide; ++x) {
@@ -126,18 +127,61 @@ inline Picture rasterize(const Kernels& kernels, const Pinhole& camera, int widt
   return fill_frame(kernels, camera, width, height, frame, options);
 }
 
-// How many triangles cover each pixel when every one is filled alone.
+// How many triangles cover each pixel, hidden or not: 0, 1, or 2 for several. Of any two triangles one has a
+// bit set in its number that the other has not: so it is enough to fill, for every bit, those that have it
+// and those that have not.
 inline std::vector<int> count_coverage(const Kernels& kernels, const Pinhole& camera, int width, int height,
                                        const Mesh& mesh) {
   std::vector<int> count(static_cast<size_t>(width * height), 0);
-  Mesh one;
-  one.positions = mesh.positions;
-  for (const Corners& c : mesh.triangles) {
-    one.triangles = {c};
-    const Picture p = rasterize(kernels, camera, width, height, one);
-    for (size_t i = 0; i < count.size(); ++i) count[i] += p.triangle[i] != kNoTriangle;
+  Mesh half;
+  half.positions = mesh.positions;
+  for (uint32_t bit = 0; bit == 0 || mesh.triangles.size() > size_t{1} << bit; ++bit) {
+    std::vector<int> covered(count.size(), 0);
+    for (uint32_t value = 0; value < 2; ++value) {
+      half.triangles.clear();
+      for (uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+        if ((i >> bit & 1) == value) half.triangles.push_back(mesh.triangles[i]);
+      }
+      const Picture p = rasterize(kernels, camera, width, height, half);
+      for (size_t i = 0; i < count.size(); ++i) covered[i] += p.triangle[i] != kNoTriangle;
+    }
+    for (size_t i = 0; i < count.size(); ++i) count[i] = std::max(count[i], covered[i]);
   }
   return count;
+}
+
+// How many triangles went which way through setup: their pixels were found at once; they are filled cell by
+// cell, set up by the kernel, or too large for it; they were clipped.
+struct Paths {
+  size_t small = 0, cells = 0, large = 0, clipped = 0;
+  bool all() const { return small > 0 && cells > 0 && large > 0 && clipped > 0; }
+};
+inline void add(Paths& sum, const Paths& p) {
+  sum.small += p.small, sum.cells += p.cells, sum.large += p.large, sum.clipped += p.clipped;
+}
+inline Paths paths_taken(const RasterFrame& frame, const Mesh& mesh) {
+  Paths paths;
+  for (const SetupChunk& chunk : frame.chunks) {
+    std::vector<uint32_t> small;
+    for (const Fragment& f : chunk.fragments) small.push_back(f.triangle);
+    std::sort(small.begin(), small.end());
+    paths.small += static_cast<size_t>(std::unique(small.begin(), small.end()) - small.begin());
+    uint32_t last = kNoTriangle;
+    for (const SetupTriangle& t : chunk.triangles) {
+      if (t.triangle == last) continue;  // another part of a clipped one
+      last = t.triangle;
+      const Corners& c = mesh.triangles[t.triangle];
+      const auto [x0, x1] = std::minmax({t.x[0], t.x[1], t.x[2]});
+      const auto [y0, y1] = std::minmax({t.y[0], t.y[1], t.y[2]});
+      if ((frame.vertices[c[0]].outside | frame.vertices[c[1]].outside | frame.vertices[c[2]].outside) != 0)
+        ++paths.clipped;
+      else if (std::max(x1 - x0, y1 - y0) > 128 * kSubpixels)
+        ++paths.large;
+      else
+        ++paths.cells;
+    }
+  }
+  return paths;
 }
 
 }  // namespace raster_test
