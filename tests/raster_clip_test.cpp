@@ -72,6 +72,62 @@ TEST(RasterClip, ABoxAroundTheCameraCoversEveryPixelOnce) {
   EXPECT_GT(clipped, 500u);
 }
 
+// How many triangles cover one pixel.
+size_t count_alone(const Kernels& kernels, const Pinhole& camera, int size, const Mesh& mesh, int x, int y) {
+  size_t count = 0;
+  Mesh one;
+  one.positions = mesh.positions;
+  Options options;
+  options.crop = {x, y, 1, 1};
+  for (const Corners& c : mesh.triangles) {
+    one.triangles = {c};
+    count += rasterize(kernels, camera, size, size, one, options).at(x, y) != kNoTriangle;
+  }
+  return count;
+}
+
+// From close to a wall, an edge or a corner of a finely cut box: triangles that the near plane or the guard
+// band cuts, huge ones, cells and small ones share their edges and corners in one picture. Where the wall is
+// seen along itself, snapping may fold it, so that a triangle turns over and its pixels are covered by it and
+// by one more on either side: once more than an even number of times.
+TEST(RasterClip, FromCloseToItsWallsABoxOfManyTrianglesCoversEveryPixelOnce) {
+  constexpr int size = 48;
+  Random random(24);
+  Paths paths;
+  size_t mixed = 0, folded = 0;
+  for (int round = 0; round < 60; ++round) {
+    const Mesh mesh = box_around_origin(std::array{4, 15, 30}[static_cast<size_t>(round) % 3], 1.0f);
+    const float gap = std::array{0.1f, 0.01f, 0.001f}[random.below(3)];
+    Pinhole camera = random_camera(random, size, random.between(0.4f, 3.0f), gap * 1e-4f, 1e9f);
+    float* const eye[3] = {&camera.origin.x, &camera.origin.y, &camera.origin.z};
+    for (float* const axis : eye) *axis = random.between(-0.9f, 0.9f);
+    for (uint32_t i = 0, n = 1 + random.below(3); i < n; ++i)
+      *eye[i] = (1 - gap) * (random.below(2) ? 1.0f : -1.0f);
+    const Kernels& kernels = *available_kernels()[static_cast<size_t>(round) % available_kernels().size()];
+    const std::vector<int> count = count_coverage(kernels, camera, size, size, mesh);
+    for (int y = 0; y < size; ++y) {
+      for (int x = 0; x < size; ++x) {
+        const int c = count[static_cast<size_t>(y * size + x)];
+        ASSERT_GE(c, 1) << "round " << round << ": a crack at " << x << "," << y;
+        if (c == 1) continue;
+        ASSERT_EQ(count_alone(kernels, camera, size, mesh, x, y) % 2, 1u) << round << " at " << x << "," << y;
+        ++folded;
+      }
+    }
+    RasterFrame frame;
+    setup_frame(kernels.front_end, camera, size, size, {}, mesh, nullptr, in_order, frame);
+    const Paths taken = paths_taken(frame, mesh);
+    add(paths, taken);
+    mixed += taken.all();
+  }
+  EXPECT_GT(paths.small, 1000u);
+  EXPECT_GT(paths.cells, 1000u);
+  EXPECT_GT(paths.large, 30u);
+  EXPECT_GT(paths.clipped, 100u);
+  EXPECT_GT(mixed, 10u);
+  EXPECT_LT(folded, 10u);
+}
+
 // A hill seen from within the reach of the near plane, which cuts it across the picture.
 TEST(RasterClip, TheNearPlaneCutsAGroundWithoutCracks) {
   constexpr int size = 64;
