@@ -52,10 +52,14 @@ inline constexpr int64_t kExactUnits = int64_t{kGuardBand} * 256;
 // A place that pixel_camera() sees at the point once it is snapped: up to half of 1/256 pixel before it, or
 // less than that behind it.
 inline Vec3 position(const Point& p, Random& random) {
-  const auto has_fraction = [](int64_t v) { return v < 1 << 15 && v > -(1 << 15); };  // bits are left
+  const auto has_fraction = [](int64_t v) { return v < 1 << 14 && v > -(1 << 14); };  // 9 bits are left
   const bool shifted = has_fraction(p.x) && has_fraction(p.y);
-  const float dx = shifted ? static_cast<float>(between(random, -4, 3)) / 8 : 0.0f;
-  const float dy = shifted ? static_cast<float>(between(random, -4, 3)) / 8 : 0.0f;
+  const auto shift = [&] {
+    if (!shifted) return 0.0f;
+    const int most = random.below(4) == 0 ? 255 : between(random, -256, 255);
+    return static_cast<float>(random.below(8) == 0 ? -256 : most) / 512;
+  };
+  const float dx = shift(), dy = shift();
   return at_pixel((static_cast<float>(p.x) + dx) / 256.0f, (static_cast<float>(p.y) + dy) / 256.0f, 1);
 }
 
