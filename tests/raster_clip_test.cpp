@@ -110,8 +110,8 @@ TEST(RasterClip, FromCloseToItsWallsABoxOfManyTrianglesCoversEveryPixelOnce) {
         const int c = count[static_cast<size_t>(y * size + x)];
         ASSERT_GE(c, 1) << "round " << round << ": a crack at " << x << "," << y;
         if (c == 1) continue;
+        ASSERT_LT(++folded, 10u);
         ASSERT_EQ(count_alone(kernels, camera, size, mesh, x, y) % 2, 1u) << round << " at " << x << "," << y;
-        ++folded;
       }
     }
     RasterFrame frame;
@@ -125,7 +125,6 @@ TEST(RasterClip, FromCloseToItsWallsABoxOfManyTrianglesCoversEveryPixelOnce) {
   EXPECT_GT(paths.large, 30u);
   EXPECT_GT(paths.clipped, 100u);
   EXPECT_GT(mixed, 10u);
-  EXPECT_LT(folded, 10u);
 }
 
 // A hill seen from within the reach of the near plane, which cuts it across the picture.

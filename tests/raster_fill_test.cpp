@@ -274,6 +274,30 @@ TEST(RasterFill, WhatLiesBeyondFarOrBeforeNearIsNotSeen) {
   EXPECT_GT(beyond, 20u);
 }
 
+TEST(RasterFill, SmallTrianglesAreSeenUpToFarPixelByPixel) {
+  // A slope from depth 4 to 6 in strips of 2x2 pixels.
+  Mesh mesh;
+  const auto corner = [](int i, int j) {
+    const float y = static_cast<float>(2 * j);
+    return at_pixel(static_cast<float>(2 * i), y, 1 / (1.0f / 4 + (1.0f / 6 - 1.0f / 4) * (y / 64)));
+  };
+  for (int j = 0; j < 32; ++j) {
+    for (int i = 0; i < 32; ++i) {
+      add_triangle(mesh, corner(i, j), corner(i + 1, j), corner(i + 1, j + 1));
+      add_triangle(mesh, corner(i, j), corner(i + 1, j + 1), corner(i, j + 1));
+    }
+  }
+  for (const float far : {4.2f, 5.0f, 5.1f, 5.9f}) {
+    const Picture p = rasterize(*available_kernels().back(), pixel_camera(0.5f, far), 64, 64, mesh);
+    const Picture all = rasterize(*available_kernels().back(), pixel_camera(0.5f, 1e6f), 64, 64, mesh);
+    ASSERT_EQ(all.covered(), 64u * 64);
+    for (size_t i = 0; i < p.triangle.size(); ++i)
+      ASSERT_EQ(p.triangle[i], all.inverse_depth[i] >= 1 / far ? all.triangle[i] : kNoTriangle) << far;
+    EXPECT_GT(p.covered(), 300u);
+    EXPECT_LT(p.covered(), 64u * 64);
+  }
+}
+
 TEST(RasterFill, HostileTrianglesDoNoHarm) {
   constexpr int size = 70;
   Random random(37);

@@ -283,6 +283,41 @@ TEST(RasterVisible, CutOutsAreTheTracersCutOuts) {
   }
 }
 
+TEST(RasterVisible, CutOutsOfAFewPixelsHaveTheirHoles) {
+  test::Random random(46);
+  std::vector<KdTriangle> triangles;
+  for (int i = 0; i < 20000; ++i) {
+    Vec3 p[3];
+    const float x = random.between(2, 120), y = random.between(2, 120);
+    for (Vec3& v : p) {
+      const float dx = random.between(0, 3), dy = random.between(0, 3);
+      v = at_pixel(x + dx, y + dy, random.between(2, 9));
+    }
+    test::add_triangle(triangles, p[0], p[1], p[2], i % 4 == 0 ? 0u : kCutOutTriangle);
+  }
+  const CutOuts cut_outs{checker_is_there, nullptr};
+  Options options;
+  options.triangles = triangles.data();
+  options.cut_outs = &cut_outs;
+  const Mesh mesh = mesh_of(triangles);
+  for (const Kernels* kernels : available_kernels()) {
+    const Picture whole = rasterize(*kernels, pixel_camera(), kSize, kSize, mesh);
+    const Picture picture = rasterize(*kernels, pixel_camera(), kSize, kSize, mesh, options);
+    size_t cut = 0, solid = 0, through = 0;
+    const std::vector<Hit> seen = see(*kernels, pixel_camera(), picture, triangles);
+    for (size_t i = 0; i < seen.size(); ++i) {
+      through += picture.triangle[i] != whole.triangle[i];
+      if (seen[i].triangle == kNoTriangle) continue;
+      const bool is_cut_out = triangles[seen[i].triangle].flags != 0;
+      ASSERT_TRUE(!is_cut_out || checker_is_there(nullptr, seen[i].triangle, seen[i].u, seen[i].v));
+      (is_cut_out ? cut : solid) += 1;
+    }
+    EXPECT_GT(cut, 2000u) << kernels->isa;
+    EXPECT_GT(solid, 1000u);
+    EXPECT_GT(through, 2000u);
+  }
+}
+
 TEST(RasterVisible, WithoutTheRuleCutOutsAreSolid) {
   std::vector<KdTriangle> triangles;
   test::add_triangle(triangles, at_pixel(0, 0, 2), at_pixel(64, 0, 2), at_pixel(0, 64, 2), kCutOutTriangle);
