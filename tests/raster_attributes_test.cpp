@@ -194,7 +194,7 @@ TEST(RasterAttributes, DepthsAreThoseOfTheTruePlanes) {
       close[is_small[number]] += std::abs(got - expected) <= places + 4 * ulp;
     }
   }
-  for (const size_t kind : {0, 1}) {
+  for (const size_t kind : {size_t{0}, size_t{1}}) {
     EXPECT_GT(covered[kind], 5000u) << kind;
     // But for slivers, whose plane no float can hold.
     EXPECT_GT(static_cast<double>(close[kind]), 0.998 * static_cast<double>(covered[kind])) << kind;
