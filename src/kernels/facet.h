@@ -64,9 +64,9 @@ static inline void make_facet(const SurfaceView& scene, uint32_t triangle, const
           mask_of_bits(f.smooth ? kAllLanes : 0)};
 }
 
-// `numbers` has a triangle in every lane.
+// `numbers` has a triangle in every lane; only the first `count` matter.
 [[gnu::always_inline]] static inline Facet<Float, Mask> gather_facet(const SurfaceView& scene,
-                                                                     const uint32_t* numbers,
+                                                                     const uint32_t* numbers, int count,
                                                                      const Vec3& eye) {
   constexpr size_t stride = sizeof(KdTriangle) / sizeof(float);
   Facet<Float, Mask> f;
@@ -78,7 +78,7 @@ static inline void make_facet(const SurfaceView& scene, uint32_t triangle, const
   uint32_t smooth = 0;
   uint32_t index[3][kLanes] = {};
   if (scene.normal_indices != nullptr) {
-    for (int i = 0; i < kLanes; ++i) {
+    for (int i = 0; i < count; ++i) {
       if (is_flat(scene, numbers[i])) continue;
       smooth |= 1u << i;
       for (int k = 0; k < 3; ++k)
@@ -138,7 +138,7 @@ static inline void prefetch_facets(const SurfaceView& scene, const uint32_t* num
     }
   }
   for (uint32_t i = count; i < kLanes; ++i) different[i] = different[0];
-  table.facet = gather_facet(scene, different, eye);
+  table.facet = gather_facet(scene, different, static_cast<int>(count), eye);
   table.state = FacetTable::State::made;
 }
 
@@ -178,7 +178,7 @@ template <class Body>
   if (table.state == FacetTable::State::too_many) {
     alignas(64) uint32_t valid[kLanes];
     store(valid, number);
-    table.facet = gather_facet(scene, valid, eye);
+    table.facet = gather_facet(scene, valid, kLanes, eye);
     store(table.place + g, lane_numbers());
   }
   body(look_up(table, g), kNoTriangle);
