@@ -337,7 +337,7 @@ void fill_tile(const RasterView& view, int tile_x, int tile_y, TileVisibility& o
                              {0, 0, kTileSide, kTileSide});
   clear(view, tile);
   mask_unwanted(tile);
-  for (int level = 0; level < kBinLevels; ++level) {
+  for (int level = kBinLevels - 1; level >= 0; --level) {
     const int shift = level * kBinLevelShift;
     const uint32_t bin =
         view.grid.first_bin[level] +
