@@ -235,22 +235,30 @@ struct VisiblePoint {
   }
 }
 
-// Where the camera's rays through a register of pixels meet their facets (visible.h). Nearly always all
-// lanes have one dominant axis, and all rays hit.
-[[gnu::always_inline]] static inline VisiblePoint visible_points(const SeenBlock& block, int g,
-                                                                 const Facet<Float, Mask>& f,
-                                                                 const Vec3T<Float>& d, Mask seen) {
+// Where rays from the eye meet triangles whose corners are given from there. Nearly always all lanes have one
+// dominant axis.
+[[gnu::always_inline]] static inline TriangleHit<Float, Mask> meet_from_eye(const Vec3T<Float> corner[3],
+                                                                            const Vec3T<Float>& d) {
   const Float x = absolute(d.x), y = absolute(d.y), z = absolute(d.z);
   const Mask x_over_y = x > y;
   const Mask along_x = both(x_over_y, x > z), along_y = both(invert(x_over_y), y > z);
-  Vec3T<Float> p[4] = {f.from_eye[0], f.from_eye[1], f.from_eye[2], d};
+  Vec3T<Float> p[4] = {corner[0], corner[1], corner[2], d};
   if (any(either(along_x, along_y))) {
     for (Vec3T<Float>& each : p)
       each = select3(along_x, permute(each, 0), select3(along_y, permute(each, 1), each));
   }
   const Shear<Float> shear = make_shear(p[3]);
-  const auto hit = surround_origin(project(p[0], shear), project(p[1], shear), project(p[2], shear), shear);
-  const uint32_t missed = bits(both(seen, invert(both(hit.hit, hit.t > Float(0.0f)))));
+  auto hit = surround_origin(project(p[0], shear), project(p[1], shear), project(p[2], shear), shear);
+  hit.hit = both(hit.hit, hit.t > Float(0.0f));
+  return hit;
+}
+
+// Where the camera's rays through a register of pixels meet their facets (visible.h). Nearly always all do.
+[[gnu::always_inline]] static inline VisiblePoint visible_points(const SeenBlock& block, int g,
+                                                                 const Facet<Float, Mask>& f,
+                                                                 const Vec3T<Float>& d, Mask seen) {
+  const auto hit = meet_from_eye(f.from_eye, d);
+  const uint32_t missed = bits(both(seen, invert(hit.hit)));
   if (missed == 0) return {hit.t, hit.u, hit.v};
   alignas(64) float t[kLanes], u[kLanes], v[kLanes];
   store(t, hit.t), store(u, hit.u), store(v, hit.v);

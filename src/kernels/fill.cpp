@@ -12,8 +12,8 @@
 // "Hierarchical Z-Buffer Visibility", SIGGRAPH 1993). What many triangles cover together is not looked for:
 // measured, that costs more than it saves.
 #include "kdtree/kdtree.h"
+#include "kernels/facet.h"
 #include "kernels/tables.h"
-#include "kernels/visible.h"
 #include "raster/coverage.h"
 #include "raster/project.h"
 #include "raster/raster.h"
@@ -134,13 +134,24 @@ CellMasks classify(const Filling& f, const int32_t at_corner[3], int x, int y, W
 }
 
 // Clears the pixels where a cut-out triangle is not there; the cell's corner is (x, y).
-uint32_t keep_there(const RasterView& view, const Filling& f, int x, int y, int first, uint32_t pixels) {
+[[gnu::noinline]] uint32_t keep_there(const RasterView& view, const Filling& f, int x, int y, int first,
+                                      uint32_t pixels) {
   const uint32_t number = f.triangle->triangle;
-  for (int lane = 0; lane < kLanes; ++lane) {
-    if (!(pixels >> lane & 1u)) continue;
-    const auto point = visible_point(*view.camera, view.triangles[number], x + kLaneX[first + lane],
-                                     y + kLaneY[first + lane]);
-    if (!f.cut_outs->is_there(f.cut_outs->scene, number, point.u, point.v)) pixels &= ~(1u << lane);
+  const KdTriangle& triangle = view.triangles[number];
+  Vec3T<Float> corner[3];
+  for (int k = 0; k < 3; ++k) corner[k] = broadcast(corner_from(view.camera->origin, triangle, k));
+  const Float px = to_float(Int(x) + load(kLaneX + first)), py = to_float(Int(y) + load(kLaneY + first));
+  const auto hit = meet_from_eye(corner, primary_direction(*view.camera, px, py));
+  alignas(64) float u[kLanes], v[kLanes];
+  store(u, hit.u), store(v, hit.v);
+  for (uint32_t left = pixels; left != 0; left &= left - 1) {
+    const int lane = __builtin_ctz(left);
+    if (!(bits(hit.hit) >> lane & 1u)) {
+      const auto point =
+          visible_point(*view.camera, triangle, x + kLaneX[first + lane], y + kLaneY[first + lane]);
+      u[lane] = point.u, v[lane] = point.v;
+    }
+    if (!f.cut_outs->is_there(f.cut_outs->scene, number, u[lane], v[lane])) pixels &= ~(1u << lane);
   }
   return pixels;
 }
