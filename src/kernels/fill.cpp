@@ -14,6 +14,7 @@
 #include "kdtree/kdtree.h"
 #include "kernels/facet.h"
 #include "kernels/tables.h"
+#include "kernels/tile_cells.h"
 #include "raster/coverage.h"
 #include "raster/project.h"
 #include "raster/raster.h"
@@ -23,37 +24,13 @@ namespace vitral {
 namespace VITRAL_ISA {
 namespace {
 
-constexpr int kCellSide = 4;
-constexpr int kWindowSide = kCellSide * kCellSide;
-constexpr int kCellPixels = kCellSide * kCellSide;
-constexpr int kCellsAcross = kTileSide / kCellSide;
-constexpr int kCells = kCellsAcross * kCellsAcross;
-constexpr int kGroups =
-    kCellPixels / kLanes;  // registers for the pixels of a cell, or for the cells of a window
-
-// Place of a pixel in a cell, and of a cell in a window of 4x4 cells.
-alignas(64) constexpr int32_t kLaneX[16] = {0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3};
-alignas(64) constexpr int32_t kLaneY[16] = {0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3};
-
-// Cells row by row, and the pixels in each. A pixel without a triangle has the least inverse depth that is
-// seen, so that what lies beyond far loses against nothing; one that is not wanted has an infinite one.
-struct Tile {
-  alignas(64) float inverse_depth[kCells * kCellPixels];
-  alignas(64) uint32_t triangle[kCells * kCellPixels];
-  alignas(64) float least[kCells];  // no more than any inverse depth of the cell
-  float least_of_all;               // no more than any of `least`
-  bool least_of_all_is_old;
-  int x, y;         // pixel at its corner
-  PixelBox window;  // pixels of the tile that are wanted, relative to the corner
-};
-
 // A triangle in the tile: how its edge functions and its inverse depth grow over the pixels of a cell.
 struct Filling {
   const SetupTriangle* triangle;
   const CutOuts* cut_outs;  // null for a triangle without holes
   int32_t least_growth[3], greatest_growth[3];
-  Int edge[3][kGroups];
-  Float across[kGroups], down[kGroups];
+  Int edge[3][kCellRegisters];
+  Float across[kCellRegisters], down[kCellRegisters];
   float least_across, least_down, greatest_across, greatest_down;  // to the farthest pixel of a cell
 };
 
@@ -76,11 +53,11 @@ Filling make_filling(const RasterView& view, const SetupTriangle& t) {
     const int32_t across = t.y[k] - t.y[next], down = t.x[next] - t.x[k];
     f.least_growth[k] = far_side * (vitral::least(across, 0) + vitral::least(down, 0));
     f.greatest_growth[k] = far_side * (vitral::greatest(across, 0) + vitral::greatest(down, 0));
-    for (int g = 0; g < kGroups; ++g)
+    for (int g = 0; g < kCellRegisters; ++g)
       f.edge[k][g] = load(kLaneX + g * kLanes) * Int(across) + load(kLaneY + g * kLanes) * Int(down);
   }
   const float across = vitral::narrow(t.across), down = vitral::narrow(t.down);
-  for (int g = 0; g < kGroups; ++g) {
+  for (int g = 0; g < kCellRegisters; ++g) {
     f.across[g] = to_float(load(kLaneX + g * kLanes)) * Float(across);
     f.down[g] = to_float(load(kLaneY + g * kLanes)) * Float(down);
   }
@@ -112,7 +89,7 @@ CellMasks classify(const Filling& f, const int32_t at_corner[3], int x, int y, W
   const SetupTriangle& t = *f.triangle;
   const InverseDepth<Double> plane{Double(t.across), Double(t.down), Double(t.at_0)};
   CellMasks masks{0, 0};
-  for (int g = 0; g < kGroups; ++g) {
+  for (int g = 0; g < kCellRegisters; ++g) {
     const int first = g * kLanes;
     Mask touched = mask_of_bits(~uint64_t{0}), inside = touched;
     for (int k = 0; k < 3; ++k) {
@@ -165,7 +142,7 @@ inline void fill_cell(const RasterView& view, const Filling& f, const Window& w,
   const SetupTriangle& t = *f.triangle;
   float* const depths = tile.inverse_depth + cell * kCellPixels;
   uint32_t* const numbers = tile.triangle + cell * kCellPixels;
-  for (int g = 0; g < kGroups; ++g) {
+  for (int g = 0; g < kCellRegisters; ++g) {
     const int first = g * kLanes;
     const Float depth = sum_within(t, Float(w.at_corner[i]), f.across[g], f.down[g]);
     const Float old_depth = load(depths + first);
@@ -177,7 +154,8 @@ inline void fill_cell(const RasterView& view, const Filling& f, const Window& w,
       wins = both(wins, value >= Int(0));
     }
     if (f.cut_outs != nullptr && any(wins)) {
-      const int x = tile.x + cell % kCellsAcross * kCellSide, y = tile.y + cell / kCellsAcross * kCellSide;
+      const int x = tile.x + cell % kTileCellsAcross * kCellSide,
+                y = tile.y + cell / kTileCellsAcross * kCellSide;
       wins = mask_of_bits(keep_there(view, f, x, y, first, bits(wins)));
     }
     store(depths + first, select(wins, depth, old_depth));
@@ -240,7 +218,7 @@ void fill_triangle(const RasterView& view, const SetupTriangle& t, Tile& tile) {
       const uint32_t rows = y1 - y >= 3 ? 0xffffu : (16u << (4 * (y1 - y))) - 1;
       for (uint32_t left = masks.touched & columns & rows; left != 0; left &= left - 1) {
         const int i = __builtin_ctz(left);
-        const int cell = (y + i / kCellSide) * kCellsAcross + x + i % kCellSide;
+        const int cell = (y + i / kCellSide) * kTileCellsAcross + x + i % kCellSide;
         if (w.greatest[i] < tile.least[cell]) continue;
         if (masks.inside >> i & 1u) {
           fill_cell<Cell::inside>(view, f, w, i, cell, tile);
@@ -248,55 +226,6 @@ void fill_triangle(const RasterView& view, const SetupTriangle& t, Tile& tile) {
           fill_cell<Cell::across>(view, f, w, i, cell, tile);
         }
       }
-    }
-  }
-}
-
-void clear(const RasterView& view, Tile& tile) {
-  for (int i = 0; i < kCells * kCellPixels; i += kLanes) {
-    store(tile.inverse_depth + i, Float(view.least_inverse_depth));
-    store(tile.triangle + i, Uint(kNoTriangle));
-  }
-  for (int cell = 0; cell < kCells; ++cell) tile.least[cell] = view.least_inverse_depth;
-  tile.least_of_all = view.least_inverse_depth;
-  tile.least_of_all_is_old = false;
-}
-
-// Nothing is nearer than a pixel that is not wanted.
-void mask_unwanted(Tile& tile) {
-  const PixelBox& w = tile.window;
-  if (w.x0 == 0 && w.y0 == 0 && w.x1 == kTileSide && w.y1 == kTileSide) return;
-  for (int i = 0; i < kCells * kCellPixels; ++i) {
-    const int cell = i / kCellPixels, pixel = i % kCellPixels;
-    const int x = cell % kCellsAcross * kCellSide + kLaneX[pixel];
-    const int y = cell / kCellsAcross * kCellSide + kLaneY[pixel];
-    if (x >= w.x0 && x < w.x1 && y >= w.y0 && y < w.y1) continue;
-    tile.inverse_depth[i] = __builtin_inff();
-  }
-}
-
-void update_least_of_all(Tile& tile) {
-  Float low = load(tile.least);
-  for (int cell = kLanes; cell < kCells; cell += kLanes) low = least(load(tile.least + cell), low);
-  tile.least_of_all = least_lane(low);
-  tile.least_of_all_is_old = false;
-}
-
-// From cells to blocks, four pixels of a row at a time.
-void hand_over(const Tile& tile, TileVisibility& out) {
-  for (int g = 0; g < kCells * kCellPixels; g += kLanes) {
-    const Mask nothing = load(tile.triangle + g) == Uint(kNoTriangle);
-    alignas(64) float depth[kLanes];
-    store(depth, select(nothing, Float(0.0f), load(tile.inverse_depth + g)));
-    for (int i = 0; i < kLanes; i += kLanes < 4 ? kLanes : 4) {
-      const int cell = (g + i) / kCellPixels, pixel = (g + i) % kCellPixels;
-      const int x = cell % kCellsAcross * kCellSide + pixel % kCellSide;
-      const int y = cell / kCellsAcross * kCellSide + pixel / kCellSide;
-      const int block = y / kBlockSide * kTileBlocksAcross + x / kBlockSide;
-      const int to = block * kPacketSize + y % kBlockSide * kBlockSide + x % kBlockSide;
-      constexpr size_t bytes = 4 * (kLanes < 4 ? kLanes : 4);
-      __builtin_memcpy(out.inverse_depth + to, depth + i, bytes);
-      __builtin_memcpy(out.triangle + to, tile.triangle + g + i, bytes);
     }
   }
 }

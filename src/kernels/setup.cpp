@@ -1,4 +1,4 @@
-// Brings vertices to the screen and sets up triangles, a register at a time. Most triangles of a detailed
+// Sets up triangles, a register at a time. Most triangles of a detailed
 // mesh cover a pixel or two: for these it costs more to hand them from tile to block to pixel than to try all
 // pixels of their bounding box here. The stages, each over a whole batch with the triangles that are left
 // side by side:
@@ -7,6 +7,7 @@
 //   3. the others: the plane of their inverse depth
 #include "kdtree/kdtree.h"
 #include "kdtree/triangle.h"
+#include "kernels/small_triangles.h"
 #include "kernels/tables.h"
 #include "raster/coverage.h"
 #include "raster/project.h"
@@ -31,16 +32,10 @@ struct Queue {
 // Triangles with sides under this many 1/256 pixels have their areas and edge values below 2^31.
 constexpr int32_t kLongestSide = 1 << 15;
 
-struct Corners {
-  Int x[3], y[3];
-  Float inverse_depth[3];
-  Uint outside_any, outside_all;
-};
-
 // The corners of triangles [first, first + kLanes), as far as they lie before `end`; in the other lanes
 // some triangle's.
-Corners load_corners(const SetupInput& in, uint32_t first, uint32_t end) {
-  Corners c;
+ScreenCorners load_corners(const SetupInput& in, uint32_t first, uint32_t end) {
+  ScreenCorners c;
   Uint outside[3];
   for (size_t k = 0; k < 3; ++k) {
     Float v[4];
@@ -71,7 +66,7 @@ inline uint32_t population(Mask m) {
   return static_cast<uint32_t>(__builtin_popcount(bits(m)));
 }
 
-void append(const Corners& c, Uint numbers, Mask m, Queue& queue) {
+void append(const ScreenCorners& c, Uint numbers, Mask m, Queue& queue) {
   const uint32_t n = queue.count;
   for (int k = 0; k < 3; ++k) {
     compress(queue.x[k] + n, c.x[k], m);
@@ -82,8 +77,8 @@ void append(const Corners& c, Uint numbers, Mask m, Queue& queue) {
   queue.count = n + population(m);
 }
 
-Corners queued(const Queue& queue, uint32_t g) {
-  Corners c;
+ScreenCorners queued(const Queue& queue, uint32_t g) {
+  ScreenCorners c;
   for (int k = 0; k < 3; ++k) {
     c.x[k] = load(queue.x[k] + g), c.y[k] = load(queue.y[k] + g);
     c.inverse_depth[k] = load(queue.inverse_depth[k] + g);
@@ -103,7 +98,7 @@ void sort_out(const SetupInput& in, uint32_t begin, uint32_t end, Queue& small, 
   const PixelBox& window = in.projection.window;
   for (uint32_t first = begin; first < end; first += kLanes) {
     const Uint numbers = Uint(first) + lane_numbers();
-    Corners c = load_corners(in, first, end);
+    ScreenCorners c = load_corners(in, first, end);
     const Mask seen = both(numbers < Uint(end), c.outside_all == Uint(0));
     const Mask on_screen = both(seen, c.outside_any == Uint(0));
     const Mask clipped = both(seen, invert(on_screen));
@@ -149,79 +144,11 @@ inline Mask lanes_before(uint32_t g, uint32_t end) {
   return Uint(g) + lane_numbers() < Uint(end);
 }
 
-// Which of the pixels in the box around each small triangle are covered: pixel (i, j) of the box in
-// covered[j * kSmallSide + i]. All edge values are below 2^23.
-struct Coverage {
-  Int x0, y0;  // the box's corner
-  Mask covered[kSmallSide * kSmallSide];
-  bool any;
-};
-Coverage find_coverage(const SetupInput& in, const Corners& c, Mask used) {
-  Coverage coverage;
-  const Int x[3] = {snapped(c.x[0]), snapped(c.x[1]), snapped(c.x[2])};
-  const Int y[3] = {snapped(c.y[0]), snapped(c.y[1]), snapped(c.y[2])};
-  const PixelBoxT<Int> box = centers_within(x, y);
-  coverage.x0 = box.x0, coverage.y0 = box.y0;
-
-  Int value[3], across[3], down[3];
-  for (int k = 0; k < 3; ++k) {
-    const int next = k == 2 ? 0 : k + 1;
-    const Int right = y[k] - y[next], below = x[next] - x[k];
-    const Int dx = box.x0 * Int(kSubpixels) + Int(kSubpixels / 2) - x[k];
-    const Int dy = box.y0 * Int(kSubpixels) + Int(kSubpixels / 2) - y[k];
-    value[k] = right * dx + below * dy - select(is_left_or_top(right, below), Int(0), Int(1));
-    across[k] = right * Int(kSubpixels);
-    down[k] = below * Int(kSubpixels);
-  }
-
-  const PixelBox& window = in.projection.window;
-  coverage.any = false;
-  for (int j = 0; j < kSmallSide; ++j) {
-    const Int py = box.y0 + Int(j);
-    const Mask row = both(used, both(py >= Int(window.y0), py < Int(window.y1)));
-    Int v[3] = {value[0], value[1], value[2]};
-    for (int i = 0; i < kSmallSide; ++i) {
-      const Int px = box.x0 + Int(i);
-      const Mask inside = (v[0] | v[1] | v[2]) >= Int(0);
-      const Mask m = both(both(inside, row), both(px >= Int(window.x0), px < Int(window.x1)));
-      coverage.covered[j * kSmallSide + i] = m;
-      coverage.any |= any(m);
-      for (int k = 0; k < 3; ++k) v[k] = v[k] + across[k];
-    }
-    for (int k = 0; k < 3; ++k) value[k] = value[k] + down[k];
-  }
-  return coverage;
-}
-
-// Inverse depth from pixel centre to pixel centre: the plane through the corners at their fine places. A
-// place is off by less than 2^-kFineBits pixels, and the depth by as much as it changes over that.
-struct SmallPlane {
-  Float across, down, at_corner, least, greatest;
-};
-SmallPlane small_plane(const Corners& c, Int x0, Int y0) {
-  const Float unit = Float(1.0f / (1 << kFineBits));
-  const auto from_0 = [&](Int to, Int from) { return to_float(to - from) * unit; };
-  const Float x1 = from_0(c.x[1], c.x[0]), x2 = from_0(c.x[2], c.x[0]);
-  const Float y1 = from_0(c.y[1], c.y[0]), y2 = from_0(c.y[2], c.y[0]);
-  const Float z0 = c.inverse_depth[0], z1 = c.inverse_depth[1] - z0, z2 = c.inverse_depth[2] - z0;
-  const Float area = x1 * y2 - y1 * x2;
-  const Mask has_plane = absolute(area) > Float(0.0f);
-  const Float inverse = Float(1.0f) / select(has_plane, area, Float(1.0f));
-  const Float across = select(has_plane, (z1 * y2 - z2 * y1) * inverse, Float(0.0f));
-  const Float down = select(has_plane, (z2 * x1 - z1 * x2) * inverse, Float(0.0f));
-  constexpr int32_t half = 1 << (kFineBits - 1);
-  const Float dx = from_0(x0 * Int(1 << kFineBits) + Int(half), c.x[0]);
-  const Float dy = from_0(y0 * Int(1 << kFineBits) + Int(half), c.y[0]);
-  return {across, down, (z0 + across * dx) + down * dy,
-          least_of(c.inverse_depth[0], c.inverse_depth[1], c.inverse_depth[2]),
-          greatest_of(c.inverse_depth[0], c.inverse_depth[1], c.inverse_depth[2])};
-}
-
 // The pixels of the small triangles.
 void emit_fragments(const SetupInput& in, const Queue& queue, SetupOutput& out) {
   uint32_t n = out.fragment_count;
   for (uint32_t g = 0; g < queue.count; g += kLanes) {
-    const Corners c = queued(queue, g);
+    const ScreenCorners c = queued(queue, g);
     const Coverage coverage = find_coverage(in, c, lanes_before(g, queue.count));
     if (!coverage.any) continue;
     const SmallPlane plane = small_plane(c, coverage.x0, coverage.y0);
@@ -277,7 +204,7 @@ void emit_triangles(const SetupInput& in, const Queue& queue, SetupOutput& out) 
   prefetch_positions(in, queue, 0);
   for (uint32_t g = 0; g < queue.count; g += kLanes) {
     prefetch_positions(in, queue, g + kLanes);
-    const Corners c = queued(queue, g);
+    const ScreenCorners c = queued(queue, g);
     const Float low = least_of(c.inverse_depth[0], c.inverse_depth[1], c.inverse_depth[2]);
     const Float high = greatest_of(c.inverse_depth[0], c.inverse_depth[1], c.inverse_depth[2]);
     const InverseDepth<Double> plane = planes(in, queue, g, low);
@@ -297,32 +224,6 @@ void emit_triangles(const SetupInput& in, const Queue& queue, SetupOutput& out) 
 }
 
 }  // namespace
-
-void project_vertices(const Projection& projection, const Vec3* positions, size_t count, ScreenVertex* out) {
-  const auto project_register = [&projection](const Vec3* from, ScreenVertex* to) {
-    Float p[4];
-    load_records([from](int lane) { return &from[lane].x; }, p);
-    const Vec3T<Double> v = project(projection, Vec3T<Double>{widen(p[0]), widen(p[1]), widen(p[2])});
-    const Uint outside = outside_planes<Uint>(v, projection.near);
-    const Mask seen = outside == Uint(0);
-    const Double inverse_w = Double(1.0) / select(seen, v.z, Double(1.0));
-    const auto place = [&](const Double& x) {
-      return from_bits(fine_place<Int>(select(seen, x * inverse_w, Double(0.0))));
-    };
-    const Float record[4] = {place(v.x), place(v.y), select(seen, narrow(inverse_w), Float(0.0f)),
-                             from_bits(outside)};
-    store_records([to](int lane) { return &to[lane]; }, record);
-  };
-
-  // A position is read together with the number after it, which the last one does not have.
-  size_t first = 0;
-  for (; first + kLanes < count; first += kLanes) project_register(positions + first, out + first);
-  Vec3 rest[kLanes + 1] = {};
-  ScreenVertex last[kLanes];
-  for (size_t i = first; i < count; ++i) rest[i - first] = positions[i];
-  project_register(rest, last);
-  for (size_t i = first; i < count; ++i) out[i] = last[i - first];
-}
 
 void setup_triangles(const SetupInput& in, uint32_t begin, uint32_t end, SetupOutput& out) {
   out.other_count = out.triangle_count = out.fragment_count = 0;

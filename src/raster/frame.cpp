@@ -20,12 +20,8 @@ void transform_vertices(ProjectKernel kernel, const Pinhole& camera, int width, 
 
 void setup_triangles(SetupKernel kernel, const Mesh& mesh, const KdTriangle* flags_of,
                      const ForEach& for_each, RasterFrame& frame) {
-  const SetupInput in{frame.projection,
-                      frame.vertices.data(),
-                      mesh.positions.data(),
-                      mesh.triangles.empty() ? nullptr : mesh.triangles.front().data(),
-                      static_cast<uint32_t>(mesh.triangles.size()),
-                      flags_of};
+  const SetupInput in{frame.projection, frame.vertices.data(), mesh.positions.data(),
+                      mesh.triangles.empty() ? nullptr : mesh.triangles.front().data(), flags_of};
   frame.chunks.resize(chunk_count(mesh.triangles.size()));
   for_each(frame.chunks.size(),
            [&](size_t chunk) { setup_chunk(kernel, in, frame.grid, mesh, chunk, frame.chunks[chunk]); });

@@ -88,8 +88,7 @@ struct SetupInput {
   Projection projection;
   const ScreenVertex* vertices;
   const Vec3* positions;
-  const uint32_t* corners;  // into both, three per triangle
-  uint32_t triangle_count;
+  const uint32_t* corners;     // into both, three per triangle
   const KdTriangle* flags_of;  // by triangle number; null where no triangle is a cut-out
 };
 
