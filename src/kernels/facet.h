@@ -112,8 +112,8 @@ static inline void prefetch_facets(const SurfaceView& scene, const uint32_t* num
 }
 
 // `numbers` are those of the block's pixels; kNoTriangle counts as the triangle of some other pixel.
-[[gnu::noinline]] static void make_table(const SurfaceView& scene, const uint32_t* numbers, const Vec3& eye,
-                                         FacetTable& table) {
+[[gnu::noinline]] static inline void make_table(const SurfaceView& scene, const uint32_t* numbers,
+                                                const Vec3& eye, FacetTable& table) {
   uint64_t left = 0;
   for (int g = 0; g < kPacketSize; g += kLanes) {
     left |= static_cast<uint64_t>(bits(invert(load(numbers + g) == Uint(kNoTriangle)))) << g;
@@ -225,8 +225,8 @@ struct VisiblePoint {
 };
 
 // Replaces the points of the lanes from g on whose rays miss their triangles.
-[[gnu::noinline]] static void correct_misses(const SeenBlock& block, int g, uint32_t missed, float* t,
-                                             float* u, float* v) {
+[[gnu::noinline]] static inline void correct_misses(const SeenBlock& block, int g, uint32_t missed, float* t,
+                                                    float* u, float* v) {
   for (; missed != 0; missed &= missed - 1) {
     const int lane = __builtin_ctz(missed), pixel = g + lane;
     const auto point = vitral::visible_point(block.camera, block.scene.triangles[block.numbers[pixel]],
