@@ -204,6 +204,10 @@ static inline Vec3T<Float> position_at(const Facet<Float, Mask>& f, Float u, Flo
   return (f.a + f.ab * u) + f.ac * v;
 }
 
+static inline NormalSum<Float, Mask> normal_sum_at(const Facet<Float, Mask>& f, Float u, Float v) {
+  return sum_normals(f.corner_normal[0], f.corner_normal[1], f.corner_normal[2], u, v, f.smooth);
+}
+
 // The pixels of a register within the block at (x, y), g their first lane.
 static inline Vec3T<Float> pixel_directions(const Pinhole& camera, int x, int y, int g) {
   const Uint pixel = lane_numbers() + Uint(static_cast<uint32_t>(g));

@@ -10,13 +10,25 @@ namespace vitral {
 namespace VITRAL_ISA {
 namespace {
 
+[[gnu::always_inline]] inline Vec3T<Float> geometric_normal(const Facet<Float, Mask>& f,
+                                                            const Vec3T<Float>& direction, Mask seen) {
+  return flip_where(looks_away_along(f.normal, direction, seen), f.normal);
+}
+
 // The shading normal as kernels/surface.cpp has it.
 [[gnu::always_inline]] inline Vec3T<Float> normal_at(const Facet<Float, Mask>& f, const VisiblePoint& p,
                                                      const Vec3T<Float>& direction, Mask seen) {
-  const Vec3T<Float> geometric = flip_where(looks_away_along(f.normal, direction, seen), f.normal);
+  const Vec3T<Float> geometric = geometric_normal(f, direction, seen);
   if (!any(f.smooth)) return geometric;
-  return interpolated_normal(f.corner_normal[0], f.corner_normal[1], f.corner_normal[2], p.u, p.v, geometric,
-                             f.smooth);
+  return interpolated_normal(normal_sum_at(f, p.u, p.v), geometric);
+}
+
+// The same of any length, which its packing asks for no more.
+[[gnu::always_inline]] inline Vec3T<Float> direction_at(const Facet<Float, Mask>& f, const VisiblePoint& p,
+                                                        const Vec3T<Float>& direction, Mask seen) {
+  const Vec3T<Float> geometric = geometric_normal(f, direction, seen);
+  if (!any(f.smooth)) return geometric;
+  return interpolated_direction(normal_sum_at(f, p.u, p.v), geometric);
 }
 
 void write_block(const SeenBlock& block, FullBlock& out) {
@@ -66,7 +78,7 @@ void write_block(const SeenBlock& block, MinBlock& out) {
       [&](int g, Mask seen, const Facet<Float, Mask>& f, const VisiblePoint& p, const Vec3T<Float>& direction,
           uint32_t number) VITRAL_INLINED {
         store(out.depth + g, select(seen, p.t, Float(0.0f)));
-        store(out.normal + g, select(seen, octahedral_normal(normal_at(f, p, direction, seen)), Uint(0u)));
+        store(out.normal + g, select(seen, octahedral_normal(direction_at(f, p, direction, seen)), Uint(0u)));
         if (number != kNoTriangle && bits(seen) == kAllLanes) {
           const uint16_t material = static_cast<uint16_t>(scene.materials[number]);
           for (int i = 0; i < kLanes; ++i) out.material[g + i] = material;

@@ -8,7 +8,8 @@
 
 namespace vitral {
 
-// x of the square in the lower 16 bits, y in the upper ones: -1 is 0 and 1 is 65535, rounded to the nearest.
+// `n` may have any length but 0. x of the square in the lower 16 bits, y in the upper ones: -1 is 0 and 1 is
+// 65535, rounded to the nearest.
 template <class F>
 static inline auto octahedral_normal(const Vec3T<F>& n) {
   const F one = F(1.0f);

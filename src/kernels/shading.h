@@ -25,17 +25,32 @@ static inline Vec3T<F> flip_where(const M& mask, const Vec3T<F>& v) {
   return select3(mask, -v, v);
 }
 
-// The normal interpolated from the corners' na, nb and nc, turned to the side of `geometric`; that one
-// where the triangle is not `smooth`, or where the corners' cancel out.
+// The sum of the corners' normals na, nb and nc by a point's weights, and whether it has a direction: not
+// where the triangle is not `smooth`, or where they cancel out.
 template <class F, class M>
-static inline Vec3T<F> interpolated_normal(const Vec3T<F>& na, const Vec3T<F>& nb, const Vec3T<F>& nc,
-                                           const F& u, const F& v, const Vec3T<F>& geometric,
-                                           const M& smooth) {
+struct NormalSum {
+  Vec3T<F> sum;
+  F squared;  // its length
+  M usable;
+};
+template <class F, class M>
+static inline NormalSum<F, M> sum_normals(const Vec3T<F>& na, const Vec3T<F>& nb, const Vec3T<F>& nc,
+                                          const F& u, const F& v, const M& smooth) {
   const Vec3T<F> sum = (na * ((F(1.0f) - u) - v) + nb * u) + nc * v;
   const F squared = dot(sum, sum);
-  const M usable = both(smooth, squared > F(1e-12f));
-  const Vec3T<F> n = sum * (F(1.0f) / square_root(select(usable, squared, F(1.0f))));
-  return select3(usable, flip_where(dot(n, geometric) < F(0.0f), n), geometric);
+  return {sum, squared, both(smooth, squared > F(1e-12f))};
+}
+
+// The unit normal that way, turned to the side of `geometric`; that one where the sum has no direction.
+template <class F, class M>
+static inline Vec3T<F> interpolated_normal(const NormalSum<F, M>& s, const Vec3T<F>& geometric) {
+  const Vec3T<F> n = s.sum * (F(1.0f) / square_root(select(s.usable, s.squared, F(1.0f))));
+  return select3(s.usable, flip_where(dot(n, geometric) < F(0.0f), n), geometric);
+}
+// The same of any length.
+template <class F, class M>
+static inline Vec3T<F> interpolated_direction(const NormalSum<F, M>& s, const Vec3T<F>& geometric) {
+  return select3(s.usable, flip_where(dot(s.sum, geometric) < F(0.0f), s.sum), geometric);
 }
 
 // F and M: float and bool for one triangle, Float and Mask for one in each lane.

@@ -31,8 +31,7 @@ void store_nothing(int g, PointPacket& out) {
   const Vec3T<Float> viewer = -normalize(direction);
   const Mask away = looks_away(f.normal, viewer);
   const Vec3T<Float> normal = flip_where(away, f.normal);
-  const Vec3T<Float> shading =
-      interpolated_normal(f.corner_normal[0], f.corner_normal[1], f.corner_normal[2], u, v, normal, f.smooth);
+  const Vec3T<Float> shading = interpolated_normal(normal_sum_at(f, u, v), normal);
   store3(out.px, out.py, out.pz, g, position_at(f, u, v), live, 0);
   store3(out.gx, out.gy, out.gz, g, normal, live, 1);
   store3(out.nx, out.ny, out.nz, g, shading, live, 1);
