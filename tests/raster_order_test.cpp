@@ -11,6 +11,23 @@ namespace {
 
 using namespace raster_test;
 
+template <class Item>
+void shuffle_lists(Random& random, BinLists<Item>& lists) {
+  for (size_t bin = 0; bin + 1 < lists.first.size(); ++bin) {
+    const uint64_t first = lists.first[bin], end = lists.first[bin + 1];
+    for (uint64_t i = first; i < end; ++i) {
+      const uint64_t other = first + random.below(static_cast<uint32_t>(end - first));
+      std::swap(lists.items[i], lists.items[other]);
+    }
+  }
+}
+
+// Another order of the triangles within every bin.
+void shuffle_bins(Random& random, RasterFrame& frame) {
+  shuffle_lists(random, frame.bins.references);
+  shuffle_lists(random, frame.bins.runs);
+}
+
 // Overlapping triangles from a pixel to beyond the guard band, all in the plane at `depth`.
 struct Sheet {
   std::vector<Outline> outlines;
@@ -185,6 +202,104 @@ TEST(RasterOrder, ACropAlignedToNothingHasTheSameBytes) {
     }
   }
   EXPECT_GT(inside, 20000u);
+}
+
+TEST(RasterOrder, EqualDepthGoesToTheLowerNumberInAnyOrder) {
+  constexpr int size = 64;
+  Random random(33);
+  // Every triangle several times, some rotated, among others; the copies have higher numbers.
+  Mesh mesh = soup(random, 60, 2, 30);
+  const size_t originals = mesh.triangles.size();
+  for (int copy = 0; copy < 3; ++copy) {
+    for (size_t i = 0; i < originals; ++i) mesh.triangles.push_back(mesh.triangles[i]);
+  }
+  const Pinhole camera = pixel_camera();
+  RasterFrame frame;
+  const Kernels& kernels = *available_kernels().back();
+  setup_frame(kernels.front_end, camera, size, size, {}, mesh, nullptr, in_order, frame);
+  const Picture expected = fill_frame(kernels, camera, size, size, frame);
+  size_t covered = 0;
+  for (const uint32_t t : expected.triangle) {
+    if (t == kNoTriangle) continue;
+    ASSERT_LT(t, originals);
+    ++covered;
+  }
+  EXPECT_GT(covered, 3000u);
+  for (int shuffle = 0; shuffle < 8; ++shuffle) {
+    shuffle_bins(random, frame);
+    ASSERT_TRUE(fill_frame(kernels, camera, size, size, frame) == expected) << shuffle;
+  }
+}
+
+// Many walls across the whole picture, close behind each other and some in the same place: skipping
+// what is hidden must neither lose the nearest nor the lower number.
+TEST(RasterOrder, CloseLayersInAnyOrder) {
+  constexpr int size = 64, layers = 300;
+  Random random(38);
+  for (int round = 0; round < 4; ++round) {
+    const float slope = round % 2 == 0 ? 0.0f : 0.01f;
+    std::vector<int> depth(layers);
+    for (int i = 0; i < layers; ++i) depth[static_cast<size_t>(i)] = i / 3;
+    for (size_t i = depth.size() - 1; i > 0; --i)
+      std::swap(depth[i], depth[random.below(static_cast<uint32_t>(i + 1))]);
+    Mesh mesh;
+    for (const int d : depth) {
+      const float w = 10 * (1 + static_cast<float>(d) * 1e-5f);
+      add_triangle(mesh, at_pixel(-9, -9, w), at_pixel(200, -9, w * (1 + slope)), at_pixel(-9, 200, w));
+    }
+    const uint32_t expected = static_cast<uint32_t>(std::find(depth.begin(), depth.end(), 0) - depth.begin());
+    const Pinhole camera = pixel_camera();
+    RasterFrame frame;
+    setup_frame(available_kernels().back()->front_end, camera, size, size, {}, mesh, nullptr, in_order,
+                frame);
+    for (int shuffle = 0; shuffle < 6; ++shuffle) {
+      for (const Kernels* kernels : available_kernels()) {
+        for (const uint32_t t : fill_frame(*kernels, camera, size, size, frame).triangle)
+          ASSERT_EQ(t, expected);
+      }
+      shuffle_bins(random, frame);
+    }
+  }
+}
+
+TEST(RasterOrder, TheOrderOfTheWorkDoesNotMatter) {
+  Random random(36);
+  Mesh mesh = soup(random, 500, 0.5f, 40);
+  while (mesh.triangles.size() < 5 * kChunkTriangles) {
+    mesh.triangles.insert(mesh.triangles.end(), mesh.triangles.begin(), mesh.triangles.begin() + 500);
+  }
+  RasterFrame expected, backwards, threaded;
+  const auto set_up = [&](const ForEach& for_each, RasterFrame& frame) {
+    const FrontEnd& kernel = available_kernels().back()->front_end;
+    setup_frame(kernel, pixel_camera(), 200, 200, {}, mesh, nullptr, for_each, frame);
+  };
+  set_up(in_order, expected);
+  set_up(
+      [](size_t count, const std::function<void(size_t)>& body) {
+        while (count-- > 0) body(count);
+      },
+      backwards);
+  ThreadPool pool(3);
+  set_up(
+      [&](size_t count, const std::function<void(size_t)>& body) {
+        pool.parallel_for(count, [&](size_t i, size_t) { body(i); });
+      },
+      threaded);
+  EXPECT_GT(expected.bins.references.items.size(), 20000u);
+  EXPECT_GT(expected.bins.runs.items.size(), 50u);
+  for (const RasterFrame* frame : {&backwards, &threaded}) {
+    EXPECT_EQ(frame->bins.references.first, expected.bins.references.first);
+    EXPECT_EQ(frame->bins.references.items, expected.bins.references.items);
+    EXPECT_EQ(frame->bins.runs.first, expected.bins.runs.first);
+    for (size_t i = 0; i < expected.bins.runs.items.size(); ++i) {
+      const FragmentRun &a = expected.bins.runs.items[i], &b = frame->bins.runs.items[i];
+      ASSERT_EQ(a.count, b.count);
+      for (uint32_t f = 0; f < a.count; ++f) ASSERT_EQ(a.first[f].triangle, b.first[f].triangle);
+    }
+  }
+  EXPECT_TRUE(std::is_sorted(expected.bins.references.items.begin(),
+                             expected.bins.references.items.begin() +
+                                 static_cast<std::ptrdiff_t>(expected.bins.references.first[1])));
 }
 
 }  // namespace

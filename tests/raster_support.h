@@ -9,6 +9,7 @@
 #include "vitral/scene.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -55,6 +56,22 @@ inline void add_triangle(Mesh& mesh, const Vec3& a, const Vec3& b, const Vec3& c
   mesh.triangles.push_back({n, n + 1, n + 2});
 }
 
+// Triangles of all sizes in front of, around and behind pixel_camera().
+inline Mesh soup(Random& random, int count, float depth_from, float depth_to) {
+  Mesh mesh;
+  for (int i = 0; i < count; ++i) {
+    const float size = std::array{0.5f, 3.0f, 20.0f, 200.0f, 5000.0f, 300000.0f}[random.below(6)];
+    const float x = random.between(-20, 120), y = random.between(-20, 120);
+    Vec3 p[3];
+    for (Vec3& v : p) {
+      const float dx = random.between(-size, size), dy = random.between(-size, size);
+      v = at_pixel(x + dx, y + dy, random.between(depth_from, depth_to));
+    }
+    add_triangle(mesh, p[0], p[1], p[2]);
+  }
+  return mesh;
+}
+
 inline std::vector<KdTriangle> kd_triangles(const Mesh& mesh, uint32_t flags = 0) {
   std::vector<KdTriangle> out;
   for (const Corners& c : mesh.triangles) {
@@ -90,6 +107,15 @@ struct Options {
   const KdTriangle* triangles = nullptr;
   const CutOuts* cut_outs = nullptr;
 };
+
+// All stages before the tiles.
+inline void setup_frame(const FrontEnd& kernels, const Pinhole& camera, int width, int height,
+                        const Rectangle& crop, const Mesh& mesh, const KdTriangle* flags_of,
+                        const ForEach& for_each, RasterFrame& frame) {
+  transform_vertices(kernels.project_vertices, camera, width, height, crop, mesh, for_each, frame);
+  setup_triangles(kernels.setup_triangles, mesh, flags_of, for_each, frame);
+  bin_triangles(for_each, frame);
+}
 
 // Fills the tiles of a frame that is set up, as far as they touch its window.
 inline Picture fill_frame(const Kernels& kernels, const Pinhole& camera, int width, int height,

@@ -172,8 +172,9 @@ inline int64_t greatest_growth(const Edge& e, int side) {
   return (int64_t{vitral::greatest(e.across, 0)} + vitral::greatest(e.down, 0)) * (side - 1);
 }
 
-// Whether the triangle lies behind all that the tile has. The float sums of the cells are off by a few 2^-24
-// of their terms, which the margin of 2^-20 covers.
+// Whether the triangle lies behind all that the tile has: its plane at the nearest corner of the tile, and
+// the least depth that is given to pixels beside the true triangle. The float sums of the cells are off by a
+// few 2^-24 of their terms, which the margin of 2^-20 covers.
 inline bool is_hidden(const SetupTriangle& t, const Tile& tile) {
   constexpr double far_side = kTileSide - 1, margin = 1.0 / (1 << 20);
   const InverseDepth<double> plane{t.across, t.down, t.at_0};

@@ -1,7 +1,6 @@
-// Sets up triangles, a register at a time. Most triangles of a detailed
-// mesh cover a pixel or two: for these it costs more to hand them from tile to block to pixel than to try all
-// pixels of their bounding box here. The stages, each over a whole batch with the triangles that are left
-// side by side:
+// Sets up triangles, a register at a time. Most triangles of a detailed mesh cover a pixel or two: for these
+// it costs more to hand them from tile to cell to pixel than to try all pixels of their bounding box here.
+// The stages, each over a whole batch with the triangles that are left side by side:
 //   1. sort out: nothing to see; to be clipped or very large (the caller's); small; and all others
 //   2. small ones: which of kSmallSide x kSmallSide pixels are covered, and how deep they are there
 //   3. the others: the plane of their inverse depth

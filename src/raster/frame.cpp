@@ -33,13 +33,6 @@ void bin_triangles(const ForEach& for_each, RasterFrame& frame) {
   merge_bins(frame.grid, frame.chunks, for_each, frame.bins);
 }
 
-void setup_frame(const FrontEnd& kernels, const Pinhole& camera, int width, int height, const Rectangle& crop,
-                 const Mesh& mesh, const KdTriangle* flags_of, const ForEach& for_each, RasterFrame& frame) {
-  transform_vertices(kernels.project_vertices, camera, width, height, crop, mesh, for_each, frame);
-  setup_triangles(kernels.setup_triangles, mesh, flags_of, for_each, frame);
-  bin_triangles(for_each, frame);
-}
-
 RasterView make_view(const RasterFrame& frame, const Pinhole& camera, const KdTriangle* triangles,
                      const CutOuts* cut_outs) {
   return {frame.chunk_triangles.data(),
