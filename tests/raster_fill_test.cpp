@@ -80,6 +80,25 @@ TEST(RasterFill, DepthIsThatOfTheTruePlane) {
             0.99 * static_cast<double>(covered));  // but for clamps at slivers' rims
 }
 
+// Snapping moves an edge by a third of 1/256 pixel, onto the last pixel centres of a tile that the true
+// triangle does not reach: they get its least inverse depth, which is nearer than its plane there.
+TEST(RasterFill, PixelsBesideTheTrueTriangleAreNotHiddenByWhatItsPlaneIsBehind) {
+  Mesh mesh;
+  const float wall = 1.00006f;
+  add_triangle(mesh, at_pixel(-10, -10, wall), at_pixel(112, -10, wall), at_pixel(-10, 112, wall));
+  add_triangle(mesh, at_pixel(31.5015f, -10, 1), at_pixel(31.5015f, 74, 1), at_pixel(80, 32, 0.2f));
+  ASSERT_LT(plane_inverse_depth(mesh, 1, pixel_camera(), 31, 20), 1 - 1e-4);
+  ASSERT_GT(1 / static_cast<double>(wall), 1 - 0.8e-4);
+  for (const Kernels* kernels : available_kernels()) {
+    const Picture p = rasterize(*kernels, pixel_camera(), 64, 64, mesh);
+    for (int y = 0; y < 64; ++y) {
+      ASSERT_EQ(p.at(30, y), 0u);
+      ASSERT_EQ(p.at(31, y), 1u) << kernels->isa << " " << y;
+      ASSERT_EQ(p.depth_at(31, y), 1.0f);
+    }
+  }
+}
+
 TEST(RasterFill, InstructionSetsGiveTheSameBytes) {
   Random random(34);
   for (int round = 0; round < 8; ++round) {
