@@ -85,9 +85,9 @@ std::vector<Use> find_uses(const Scene& scene) {
     Use& use = uses[static_cast<size_t>(m.diffuse_map)];
     use.used = true;
     if (m.opacity_map == kNoTexture || use.coverage) continue;
-    const Texture& colour = scene.textures[static_cast<size_t>(m.diffuse_map)];
+    const Texture& color = scene.textures[static_cast<size_t>(m.diffuse_map)];
     const Texture& map = scene.textures[static_cast<size_t>(m.opacity_map)];
-    if (map.width == colour.width && map.height == colour.height) use.coverage = &map;
+    if (map.width == color.width && map.height == color.height) use.coverage = &map;
   }
   return uses;
 }
