@@ -73,6 +73,21 @@ TEST_F(Cli, RendersIntoTheCurrentFolder) {
   EXPECT_EQ(folder.files(), 3u) << "a.obj, p.xml, a.png";
 }
 
+// The automatic camera looks at the mesh before anything is made of its textures.
+TEST_F(Cli, ShowsATexturedMeshWithoutACamera) {
+  ASSERT_EQ(run({"a.obj", "--size", "16x16", "-o", "texture.png"}).code, 0);
+  folder.write("t.obj",
+               "mtllib t.mtl\nusemtl t\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n");
+  folder.write("t.mtl", "newmtl t\nKd 1 1 1\n");
+  ASSERT_EQ(run({"t.obj", "--size", "32x32", "-o", "plain.png"}).code, 0);
+  folder.write("t.mtl", "newmtl t\nKd 1 1 1\nmap_Kd texture.png\n");
+  const Finished done = run({"t.obj", "--size", "32x32", "-o", "textured.png"});
+  EXPECT_EQ(done.code, 0);
+  EXPECT_EQ(done.err, "");
+  EXPECT_EQ(run({"diff", "plain.png", "textured.png"}).code, 1);
+  EXPECT_EQ(run({"bench", "t.obj", "--size", "16x16", "--repeat", "1", "--effects", "none"}).code, 0);
+}
+
 TEST_F(Cli, WritesWhereItIsTold) {
   EXPECT_EQ(run({"render", "p.xml", "-o", "b.png"}).code, 0);
   EXPECT_EQ(read_png(folder / "b.png").width, 16);

@@ -22,7 +22,7 @@ struct Accelerator {
   bool has_glass = false, has_cut_outs = false;
   std::vector<FlatColor> colors;  // of the materials
   SurfaceView surfaces;
-  std::vector<MipMap> mip_maps;  // of the scene's textures; render() and its like make them
+  std::vector<MipMap> mip_maps;  // of the scene's textures; empty: colours are those without them
 
   Accelerator() = default;
   Accelerator(const Accelerator&) = delete;

@@ -125,7 +125,7 @@ float sample_alpha(const Texture& texture, Vec2 uv) {
 void apply_textures(const FrameContext& frame, const HitPacket& hits, const RayWidths& widths,
                     SurfacePacket& s) {
   const Scene& scene = frame.scene;
-  if (scene.textures.empty()) return;
+  if (frame.accelerator.mip_maps.empty()) return;
   TexturedLanes lanes;
   uint64_t textured = 0;
   for (uint64_t left = s.points.live; left != 0; left &= left - 1) {

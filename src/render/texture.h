@@ -21,7 +21,8 @@ Vec3 sample_color(const MipMap& map, const Vec2& center, const Vec2& step, float
 // shadows and ambient occlusion, at any distance.
 float sample_alpha(const Texture& texture, Vec2 uv);
 
-// Multiplies the albedo of the live lanes whose materials have a texture by what the rays see of it.
+// Multiplies the albedo of the live lanes whose materials have a texture by what the rays see of it. Does
+// nothing where no mip maps were made.
 void apply_textures(const FrameContext& frame, const HitPacket& hits, const RayWidths& widths,
                     SurfacePacket& surfaces);
 
