@@ -319,7 +319,7 @@ TEST(Refraction, OfAThinPane) {
     pane.transmission = {0.9f, 0.8f, 0.7f};
     add_floor(scene, add_material(scene, pane), 50, 1);
     scene.ambient = {0.5f, 0.5f, 0.5f};
-    scene.background = {0.2f, 0.4f, 0.8f};
+    scene.background.color = {0.2f, 0.4f, 0.8f};
     Settings s = small(16, 16);
     s.effects = {false, true, true, false};
     s.fresnel = model;
@@ -348,7 +348,7 @@ TEST(Refraction, OfASolidSlab) {
   add_quad(scene, black, {-50, 0, -50}, {0, 0, 100}, {50, 0, 0});  // x < 0 black, x > 0 white
   add_quad(scene, white, {0, 0, -50}, {0, 0, 100}, {50, 0, 0});
   scene.ambient = {1, 1, 1};
-  scene.background = {0, 0, 0};
+  scene.background.color = {0, 0, 0};
   Settings s = small(64, 16);
   s.effects = {false, false, true, false};
   s.min_importance = 0;
@@ -383,7 +383,7 @@ TEST(Refraction, TotalInternalReflection) {
   const uint32_t white = add_material(scene, matte({1, 1, 1}));
   add_quad(scene, white, {30, -60, -60}, {0, 0, 120}, {0, 60, 0});  // seen by the mirrored ray, at x = 30
   scene.ambient = {0.7f, 0.7f, 0.7f};
-  scene.background = {0, 0, 0};
+  scene.background.color = {0, 0, 0};
   Settings s = small(16, 16);
   s.effects = {false, false, true, false};
   const float over = std::asin(1 / 1.5f) + 0.05f;
@@ -476,7 +476,7 @@ TEST(NotFinite, PixelsAreRedAndCounted) {
 
 TEST(Background, ShowsWhereNothingIs) {
   Scene scene;
-  scene.background = {0.25f, 0.5f, 1};
+  scene.background.color = {0.25f, 0.5f, 1};
   Settings s = small();
   s.effects = {true, true, true, true};
   const Frame frame = render_scene(scene, kFromAbove, s);

@@ -181,7 +181,10 @@ TEST(Random, KeysOfPixelsDoNotRepeat) {
 }
 
 TEST(Pinhole, PixelCentresAndTheFieldOfView) {
-  const Pinhole p = make_pinhole({"", {1, 2, 3}, {0, 0, -2}, {0, 5, 0}, 90, 0.1f, 100}, 200, 100);
+  Camera camera;
+  camera.position = {1, 2, 3}, camera.view = {0, 0, -2}, camera.up = {0, 5, 0};
+  camera.fov = 90, camera.near = 0.1f, camera.far = 100;
+  const Pinhole p = make_pinhole(camera, 200, 100);
   // The centre of the picture lies between pixels: (99, 49) and (100, 50) see it from both sides.
   const Vec3 a = primary_direction(p, 99.0f, 49.0f), b = primary_direction(p, 100.0f, 50.0f);
   EXPECT_NEAR(a.x, -b.x, 1e-6);

@@ -97,7 +97,7 @@ TEST(Project, ReadsTheReportsVocabulary) {
   EXPECT_EQ(fonte.fov, 50);
   EXPECT_EQ(fonte.near, 0.3f);
   EXPECT_EQ(fonte.far, 1000);
-  EXPECT_EQ(project.scene.background, (Vec3{0.1f, 0.2f, 0.3f}));
+  EXPECT_EQ(project.scene.background.color, (Vec3{0.1f, 0.2f, 0.3f}));
   ASSERT_EQ(project.scene.lights.size(), 2u);
   EXPECT_EQ(project.scene.lights[0].kind, Light::Kind::directional);
   EXPECT_EQ(project.scene.lights[0].direction, (Vec3{0, -1, 0})) << "of unit length";

@@ -136,7 +136,10 @@ inline Light sun(const Vec3& direction, const Vec3& color = {1, 1, 1}) {
 }
 
 inline Camera camera_at(const Vec3& position, const Vec3& view, float fov = 60, const Vec3& up = {0, 1, 0}) {
-  return {"", position, view, up, fov, 0.01f, 1000};
+  Camera camera;
+  camera.position = position, camera.view = view, camera.up = up;
+  camera.fov = fov, camera.near = 0.01f, camera.far = 1000;
+  return camera;
 }
 
 inline Effects only(bool Effects::*effect) {

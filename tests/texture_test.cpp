@@ -108,7 +108,7 @@ TEST(TexturedFloor, InAMirrorIsSeenByConesAsWellAsByTheCamera) {
   mirror.optics = Optics::mirror;
   add_quad(f.scene, add_material(f.scene, mirror), {-50, -1, -1}, {100, 0, 0}, {0, 100, 0});
   f.scene.ambient = {1, 1, 1};
-  f.scene.background = {0, 0, 0};
+  f.scene.background.color = {0, 0, 0};
   Settings s = picture();
   s.effects = only(&Effects::reflection);
   const Frame frame = render_scene(f.scene, f.camera, s);
@@ -150,7 +150,7 @@ double ball_error(const Material& m, double& deviation) {
   Floor f = make_floor({0, -0.1f, -1}, 8);
   add_ball(f.scene, m, {0.3f, 1.2f, -2.5f}, 1);
   f.scene.ambient = {1, 1, 1};
-  f.scene.background = {0.5f, 0.5f, 0.5f};
+  f.scene.background.color = {0.5f, 0.5f, 0.5f};
   constexpr int kFiner = 8, kSmall = 64;
   Settings s = picture(kSmall);
   s.effects = {false, true, true, false};

@@ -15,6 +15,12 @@ namespace vitral {
 enum class Fresnel { exact, schlick, report };
 enum class Compositing { physical, report };
 enum class Primary { raster, trace };
+// How the samples of a pixel become its colour: by their distance from its centre, over 1, 2 and 4 pixels
+// (Mitchell and Netravali, "Reconstruction Filters in Computer Graphics", SIGGRAPH 1988, B = C = 1/3).
+enum class Filter { box, tent, mitchell };
+// Where shadow rays start on a smooth mesh: on the triangle, or on the smooth surface that the corners'
+// normals suggest (Hanika, "Hacking the Shadow Terminator", Ray Tracing Gems II, chapter 4, 2021).
+enum class Terminator { facet, smooth };
 enum class Isa { automatic, scalar, v2, avx2, avx512 };
 
 struct Effects {
@@ -30,10 +36,14 @@ struct Rectangle {
 };
 
 inline constexpr int kMaxImageSide = 16384;
+inline constexpr int kMostPixelSamples = 65536;
+inline constexpr int kMostLightSamples = 1024;
 
 struct Settings {
   int width = 1024, height = 1024;  // 1..kMaxImageSide
   Rectangle crop;                   // empty: the whole frame
+  int samples = 1;  // per pixel, 1..kMostPixelSamples; one: the middle of pixel, lens and shutter
+  Filter filter = Filter::box;
   Effects effects;
   int ao_samples = 16;            // a square number, 1..1024
   float ao_distance = 0.5f;       // > 0
@@ -44,6 +54,7 @@ struct Settings {
   Fresnel fresnel = Fresnel::exact;
   Compositing compositing = Compositing::physical;
   Primary primary = Primary::raster;
+  Terminator terminator = Terminator::facet;
   Isa isa = Isa::automatic;
   int threads = 0;  // 0: one per processor
   uint32_t seed = 1;

@@ -235,7 +235,7 @@ void light_automatically(const View& view, Scene& scene) {
   scene.lights = {sun};
   const float ambient = view.place == Place::inside ? 0.75f : 0.35f;
   scene.ambient = {ambient, ambient, ambient};
-  scene.background = {0.8f, 0.8f, 0.8f};
+  scene.background.color = {0.8f, 0.8f, 0.8f};
 }
 
 float auto_ao_distance(const Box& core) {

@@ -35,7 +35,7 @@ void read_viewport(Reading& reading, const XmlElement& element) {
   reading.viewports.push_back(attribute_or(element, "name", ""));
   for (const XmlElement& child : element.children) {
     if (same_name(child.name, "bgcolor")) {
-      reading.project.scene.background = color_of(reading.source, child, kRadiances);
+      reading.project.scene.background.color = color_of(reading.source, child, kRadiances);
     } else {
       warn_unknown_child(reading.source, element, child);
     }

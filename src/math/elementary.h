@@ -40,6 +40,38 @@ static inline double tangent(double x) {
   return s / c;
 }
 
+// sin and cos of an angle in degrees, error below 1e-15 of a few turns: the quadrant's angle within +-45
+// degrees, Taylor.
+static inline void sin_cos_degrees(double degrees, double& sine, double& cosine) {
+  const double turns = degrees / 90;
+  const double whole = static_cast<double>(static_cast<int64_t>(turns < 0 ? turns - 0.5 : turns + 0.5));
+  const double a = (turns - whole) * 1.5707963267948966, a2 = a * a;
+  double s = 0, c = 0;
+  for (int k = 18; k >= 2; k -= 2) {
+    s = -a2 / (k * (k + 1)) * (1 + s);
+    c = -a2 / (k * (k - 1)) * (1 + c);
+  }
+  s = a * (1 + s), c = 1 + c;
+  const int64_t quadrant = static_cast<int64_t>(whole) & 3;
+  sine = quadrant == 0 ? s : quadrant == 1 ? c : quadrant == 2 ? -s : -c;
+  cosine = quadrant == 0 ? c : quadrant == 1 ? -s : quadrant == 2 ? -c : s;
+}
+
+// The angle of the point (x, y), in (-pi, pi], error below 1e-15; 0 for (0, 0). Halved twice, then Taylor.
+static inline double arc_tangent(double y, double x) {
+  const double ax = x < 0 ? -x : x, ay = y < 0 ? -y : y;
+  if (!(ax > 0) && !(ay > 0)) return 0;
+  double t = ax > ay ? ay / ax : ax / ay;
+  for (int i = 0; i < 2; ++i) t = t / (1 + __builtin_sqrt(1 + t * t));
+  const double t2 = t * t;
+  double sum = 0;
+  for (int k = 25; k >= 1; k -= 2) sum = 1.0 / k - t2 * sum;
+  double angle = 4 * t * sum;
+  if (ay >= ax) angle = 1.5707963267948966 - angle;
+  if (x < 0) angle = 3.141592653589793 - angle;
+  return y < 0 ? -angle : angle;
+}
+
 // log2(x) for x > 0, normal, error below 1e-15 relative to max(1, |log2 x|): atanh series.
 static inline double log2_of(double x) {
   uint64_t b = std::bit_cast<uint64_t>(x);

@@ -33,6 +33,8 @@ struct FrameContext {
   int ao_strata;                       // n of n x n samples
   std::vector<float> ao_of_free_rays;  // (k / N)^exponent for k = 0..N
   Count count = Count::nothing;
+  int sample = 0;  // of settings.samples: this frame is one of them
+  float time = 0;  // when it is seen
 };
 
 // Throws UsageError when the instruction set is not there. Refers to its arguments; `raster` is null.

@@ -175,7 +175,7 @@ uint64_t trace_packet(const FrameContext& frame, const Path* paths, int count, s
   for (int lane = 0; lane < count; ++lane) {
     const Path& p = paths[lane];
     const bool met = surfaces.points.live >> lane & 1;
-    const Vec3 seen = met ? lit.light.color[lane] : frame.scene.background;
+    const Vec3 seen = met ? lit.light.color[lane] : frame.scene.background.color;
     const Vec3 add = p.weight * seen;
     sums.pixels[p.pixel] += add;
     Vec3* part = p.root == PathKind::reflection ? sums.reflection : sums.refraction;

@@ -79,7 +79,7 @@ uint64_t lanes_inside(const Rectangle& crop, int x, int y) {
 
 void render_tile(const FrameContext& frame, const Rectangle& crop, int tile_x, int tile_y, Worker& worker,
                  Frame& out, const AovTargets& targets) {
-  worker.color.assign(kTilePixels, frame.scene.background);
+  worker.color.assign(kTilePixels, frame.scene.background.color);
   PathSums sums{worker.color.data(), nullptr, nullptr, nullptr};
   if (targets.any) {
     worker.reflection.assign(kTilePixels, Vec3{0, 0, 0});
