@@ -37,7 +37,8 @@ else
   STB_FLAGS := -isystem /usr/include/stb
 endif
 
-# One list of instruction sets: every file of src/kernels is compiled once for each.
+# One list of instruction sets: every file of src/kernels is compiled once for each. ISAS="scalar avx512" builds
+# these only.
 ifneq ($(filter x86_64 amd64,$(shell uname -m)),)
   ISAS := scalar v2 avx2 avx512
 else
@@ -47,6 +48,8 @@ ISA_scalar := -DLANES=1
 ISA_v2     := -DLANES=4 -march=x86-64-v2
 ISA_avx2   := -DLANES=8 -march=x86-64-v3
 ISA_avx512 := -DLANES=16 -march=x86-64-v4 -mprefer-vector-width=512
+
+CXXFLAGS_ALL += '-DVITRAL_FOR_EACH_ISA(X)=$(foreach isa,$(ISAS),X($(isa)))'
 
 OUT     := out/$(config)
 KERNELS := $(foreach isa,$(ISAS),$(patsubst src/kernels/%.cpp,$(OUT)/obj/kernels/$(isa)/%.o,$(wildcard src/kernels/*.cpp)))
@@ -81,8 +84,8 @@ $(OUT)/vitral: $(OUT)/obj/app/main.o $(LIBRARY) $(KERNELS)
 # Objects depend on this file, which changes only when the compiler or the flags do.
 $(OUT)/flags: FORCE
 	@mkdir -p $(@D)
-	@echo '$(CXX) $(CXXFLAGS_ALL) $(STB_FLAGS) $(LDFLAGS_ALL) $(foreach isa,$(ISAS),$(ISA_$(isa)))' | cmp -s - $@ || \
-	  echo '$(CXX) $(CXXFLAGS_ALL) $(STB_FLAGS) $(LDFLAGS_ALL) $(foreach isa,$(ISAS),$(ISA_$(isa)))' > $@
+	@echo "$(CXX) $(CXXFLAGS_ALL) $(STB_FLAGS) $(LDFLAGS_ALL) $(foreach isa,$(ISAS),$(ISA_$(isa)))" | cmp -s - $@ || \
+	  echo "$(CXX) $(CXXFLAGS_ALL) $(STB_FLAGS) $(LDFLAGS_ALL) $(foreach isa,$(ISAS),$(ISA_$(isa)))" > $@
 
 # What the build needs is asked for once, so that what is missing is answered with how to get it.
 $(OUT)/compiler: $(OUT)/flags
@@ -102,7 +105,7 @@ $(OUT)/gtest: $(OUT)/compiler
 
 $(OUT)/obj/%.o: src/%.cpp $(OUT)/flags $(OUT)/stb
 	@mkdir -p $(@D)
-	$(CXX) $(CXXFLAGS_ALL) $(STB_FLAGS) -DVITRAL_ISAS='$(ISAS)' -c $< -o $@
+	$(CXX) $(CXXFLAGS_ALL) $(STB_FLAGS) -c $< -o $@
 
 define kernel_rule
 $(OUT)/obj/kernels/$(1)/%.o: src/kernels/%.cpp $(OUT)/flags $(OUT)/compiler

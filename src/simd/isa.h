@@ -1,9 +1,8 @@
-// The list of instruction sets, once. A build for another processor than x86-64 has only `scalar`.
+// The instruction sets that were built, and which of them this processor has.
 #pragma once
 
-#if defined(__x86_64__)
-#define VITRAL_FOR_EACH_ISA(X) X(scalar) X(v2) X(avx2) X(avx512)
-#else
+// Calls the macro X for each name; the list is the Makefile's.
+#ifndef VITRAL_FOR_EACH_ISA
 #define VITRAL_FOR_EACH_ISA(X) X(scalar)
 #endif
 
