@@ -30,7 +30,7 @@ inline int between(Random& random, int low, int high) {
 
 // Looks along -z from the world's origin; the pixel of the point (x, -y, -1) is (x, y) exactly.
 inline Pinhole pixel_camera(float near = 0.125f, float far = 1e6f) {
-  return {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, -1}, 1, 0, 0, near, far};
+  return {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, -1}, 1, 0, 0, near, far, 1};
 }
 // The point seen at (x, y) pixels by the camera above, at the given depth.
 inline Vec3 at_pixel(float x, float y, float depth) {
@@ -43,7 +43,7 @@ inline Pinhole make_camera(const Vec3& eye, const Vec3& view, int width, int hei
   const Vec3 right = normalize(cross(view, Vec3{0, 1, 0}));
   const Vec3 up = cross(right, view);
   const float step = 2 * half_height / static_cast<float>(height);
-  return {eye, right, up, view, step, step * static_cast<float>(width) * 0.5f, half_height, near, far};
+  return {eye, right, up, view, step, step * static_cast<float>(width) * 0.5f, half_height, near, far, step};
 }
 
 inline void in_order(size_t count, const std::function<void(size_t)>& body) {

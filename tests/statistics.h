@@ -11,6 +11,7 @@ namespace vitral::test {
 // Means and variances of the colours of pictures that differ only in their seeds, pixel by pixel.
 struct PictureSum {
   size_t count = 0;
+  int samples = 1;                   // of a pixel in each picture
   std::vector<double> sum, squares;  // three a pixel
 
   void add(const std::vector<Vec3>& pixels) {
@@ -29,6 +30,12 @@ struct PictureSum {
   double variance(size_t i) const {
     const double n = static_cast<double>(count), m = mean(i);
     return std::max((squares[i] / n - m * m) / (n - 1), 0.0);
+  }
+  // What is seen rarely may not have been seen at all: a mean is uncertain by at least half of one sample's
+  // white.
+  double least_variance() const {
+    const double all = static_cast<double>(count) * samples;
+    return 0.25 / (all * all);
   }
 };
 
@@ -50,7 +57,8 @@ inline double greatest_z(const PictureSum& a, const PictureSum& b) {
   for (size_t i = 0; i < a.sum.size(); ++i) {
     const double difference = std::abs(a.mean(i) - b.mean(i));
     if (difference < 1e-5) continue;
-    greatest = std::max(greatest, difference / std::sqrt(a.variance(i) + b.variance(i) + 1e-14));
+    greatest = std::max(greatest,
+                        difference / std::sqrt(std::max(a.variance(i), a.least_variance()) + b.variance(i)));
   }
   return greatest;
 }

@@ -58,6 +58,8 @@ void override_settings(const Options& options, Settings& settings) {
     settings.height = options.size->height;
   }
   override_with(options.crop, settings.crop);
+  override_with(options.samples, settings.samples);
+  override_with(options.filter, settings.filter);
   override_with(options.effects, settings.effects);
   override_with(options.ao_samples, settings.ao_samples);
   override_with(options.ao_distance, settings.ao_distance);
@@ -74,6 +76,13 @@ void override_settings(const Options& options, Settings& settings) {
   settings.keep_radiance = false;  // nobody writes it
 }
 
+void override_lens(const Options& options, Camera& camera) {
+  override_with(options.aperture, camera.aperture);
+  override_with(options.focus, camera.focus);
+  if (options.shutter)
+    camera.shutter_open = options.shutter->open, camera.shutter_close = options.shutter->close;
+}
+
 void override_camera(const Options& options, Camera& camera) {
   override_with(options.eye, camera.position);
   override_with(options.view, camera.view);
@@ -81,6 +90,9 @@ void override_camera(const Options& options, Camera& camera) {
   override_with(options.fov, camera.fov);
   override_with(options.near, camera.near);
   override_with(options.far, camera.far);
+  override_lens(options, camera);
+  // Who says where to stand or look wants the camera to rest there.
+  if (options.eye || options.view || options.up) camera.motion.clear();
   const std::string fault = camera_fault(camera);
   if (!fault.empty()) throw UsageError("camera: " + fault);
 }
@@ -122,6 +134,9 @@ void find_view(Job& job, const Options& options) {
     view = best_view(candidate_views(scene.mesh, aspect, wishes), triangle_counter(scene, settings, control));
   }
   job.camera = view.camera;
+  const Vec3 middle = center(core(scene.mesh)) - view.camera.position;
+  job.camera.focus = greatest(dot(middle, normalize(view.camera.view)), view.camera.near);
+  override_lens(options, job.camera);
   if (job.kind == InputKind::project) return;
   light_automatically(view, scene);
   if (!options.ao_distance) settings.ao_distance = auto_ao_distance(core(scene.mesh));
@@ -183,7 +198,8 @@ void load_job(Job& job, const Options& options) {
 
 size_t frame_bytes(const Settings& settings) {
   // Pixels, auxiliary pictures, and what the encoder of the PNG holds beside them.
-  const size_t bytes = sizeof(Vec3) * settings.aovs.size() + sizeof(Rgb8) * 3;
+  const size_t sums = settings.samples > 1 ? sizeof(Vec3d) : 0;
+  const size_t bytes = sums + sizeof(Vec3) * settings.aovs.size() + sizeof(Rgb8) * 3;
   const bool whole = settings.crop.width == 0;
   return bytes * static_cast<size_t>(whole ? settings.width : settings.crop.width) *
          static_cast<size_t>(whole ? settings.height : settings.crop.height);

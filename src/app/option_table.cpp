@@ -85,6 +85,15 @@ Size size(const OptionRow& row, const std::string& value) {
   reject(row, value, "WxH, each side from 1 to " + std::to_string(kMaxImageSide));
 }
 
+Shutter shutter(const OptionRow& row, const std::string& value) {
+  const std::vector<std::string> parts = split(value, ',');
+  if (parts.size() == 2) {
+    const auto open = parse_number(parts[0], kTimes), close = parse_number(parts[1], kTimes);
+    if (open && close && *open <= *close) return {*open, *close};
+  }
+  reject(row, value, "two times, OPEN,CLOSE, the later one second");
+}
+
 Rectangle crop(const OptionRow& row, const std::string& value) {
   const std::vector<std::string> parts = split(value, ',');
   if (parts.size() == 3) {
@@ -189,6 +198,20 @@ constexpr OptionRow kTable[] = {
      [](O& o, const R& r, const S& v) { o.near = number(r, v, kDistances); }},
     {kView, "--far", "", "D", kFrame, "furthest visible distance (likewise)",
      [](O& o, const R& r, const S& v) { o.far = number(r, v, kDistances); }},
+
+    {kView, "--samples", "", "N", kFrame, "samples a pixel, 1 to 65536 (1: its middle)",
+     [](O& o, const R& r, const S& v) { o.samples = integer(r, v, 1, kMostPixelSamples); }},
+    {kView, "--filter", "", "NAME", kFrame, "how they become a colour: box, tent or mitchell (box)",
+     [](O& o, const R& r, const S& v) {
+       o.filter = one_of(r, v, {Filter::box, Filter::tent, Filter::mitchell});
+     }},
+    {kView, "--aperture", "", "D", kFrame,
+     "diameter of the lens: what is not in focus blurs, given --samples\n(0: a pinhole)",
+     [](O& o, const R& r, const S& v) { o.aperture = number(r, v, kApertures); }},
+    {kView, "--focus", "", "D", kFrame, "distance, along the view, of what is sharp (a mesh: its middle)",
+     [](O& o, const R& r, const S& v) { o.focus = number(r, v, kDistances); }},
+    {kView, "--shutter", "", "A,B", kFrame, "the times at which it opens and closes: what moves blurs",
+     [](O& o, const R& r, const S& v) { o.shutter = shutter(r, v); }},
 
     {kLight, "--sun", "", "X,Y,Z", kFrame, "the way the sun's light travels",
      [](O& o, const R& r, const S& v) { o.sun = direction(r, v); }},
@@ -297,6 +320,18 @@ const char* name_of(Compositing compositing) {
 
 const char* name_of(Layout layout) {
   return layout == Layout::full ? "full" : "min";
+}
+
+const char* name_of(Filter filter) {
+  switch (filter) {
+    case Filter::box:
+      return "box";
+    case Filter::tent:
+      return "tent";
+    case Filter::mitchell:
+      return "mitchell";
+  }
+  return "";
 }
 
 const char* name_of(Primary primary) {

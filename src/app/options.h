@@ -19,6 +19,10 @@ struct Size {
   int width = 0, height = 0;
 };
 
+struct Shutter {
+  float open = 0, close = 0;  // times
+};
+
 // What was asked for. An option that was not given leaves the project's figure, or the default.
 struct Options {
   Command command = Command::render;
@@ -30,7 +34,10 @@ struct Options {
   std::optional<Size> size;
   std::optional<Rectangle> crop;
   std::optional<Vec3> eye, view, up, sun;
-  std::optional<float> fov, near, far;
+  std::optional<float> fov, near, far, aperture, focus;
+  std::optional<Shutter> shutter;
+  std::optional<int> samples;
+  std::optional<Filter> filter;
 
   std::optional<Effects> effects;
   std::optional<int> ao_samples, max_depth, threads;
@@ -67,6 +74,7 @@ const char* name_of(Isa isa);
 const char* name_of(Fresnel fresnel);
 const char* name_of(Compositing compositing);
 const char* name_of(Primary primary);
+const char* name_of(Filter filter);
 const char* name_of(Layout layout);
 
 }  // namespace vitral

@@ -8,6 +8,8 @@ void add_settings(JsonWriter& json, const Settings& settings) {
   json.begin_object("settings")
       .add("width", settings.width)
       .add("height", settings.height)
+      .add("samples", settings.samples)
+      .add("filter", name_of(settings.filter))
       .begin_object("effects")
       .add("shadows", settings.effects.shadows)
       .add("reflection", settings.effects.reflection)
@@ -43,6 +45,10 @@ void add_camera(JsonWriter& json, const Camera& camera) {
       .add("fov", camera.fov)
       .add("near", camera.near)
       .add("far", camera.far)
+      .add("aperture", camera.aperture)
+      .add("focus", camera.focus)
+      .add("shutter_open", camera.shutter_open)
+      .add("shutter_close", camera.shutter_close)
       .end_object();
 }
 

@@ -12,13 +12,19 @@
 //       <cameras><camera name="...">
 //         <perspective fov="60" near="0.1" far="1000"/>  fov vertical, in degrees
 //         <position VECTOR/> <view VECTOR/> <up VECTOR/>  view: the way it looks; up: 0 1 0 if left out
+//         <lens aperture="0.05" focus="4"/>    diameter, and the depth that is sharp; without it a pinhole
+//         <shutter open="0" close="0.5"/>      times; the picture is the mean of what is seen between them
+//         <motion><key time="0"> <position/> <view/> <up/>   where it is at some times, in their order; what
+//                                              a key leaves out is as in the key before
 //       <lights><light name="..." type="directional|point">
 //         <direction VECTOR/> <position VECTOR/>   with a direction the light is directional, with a
 //         <color COLOR/> <ambient COLOR/>          position only it is a point; ambient adds to the scene
 //       <materialLibs><mlib name="a.mtl"/>         must exist; an OBJ loads its own by itself
 //     <pipelines>
 //       <pipeline name="..." default="true" defaultCamera="...">   one or more
-//         <pass class="raster" name="..."/>        the targets pos, norm, color (other name: default)
+//         <pass class="raster" name="..."          the targets pos, norm, color (other name: default)
+//               samples="1" filter="box|tent|mitchell"/>   per pixel, 1..65536: over the pixel, lens and
+//               shutter
 //         <pass class="trace" name="...">          (other name: optix); empty: a pass-through
 //           <shadows/>
 //           <reflection maxDepth="5" minImportance="0.005" fresnel="exact|schlick|report"/>

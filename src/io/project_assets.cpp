@@ -42,36 +42,6 @@ void read_viewport(Reading& reading, const XmlElement& element) {
   }
 }
 
-void read_camera(Reading& reading, const XmlElement& element) {
-  const Source& source = reading.source;
-  warn_unknown_attributes(source, element, {"name", "type"});
-  Camera camera;
-  camera.name = attribute_or(element, "name", "");
-  if (camera.name.empty()) fail(source, element, "this camera has no name");
-  if (has_camera(reading.project, camera.name)) {
-    fail(source, element, "there is another camera " + named(camera.name));
-  }
-  for (const XmlElement& child : element.children) {
-    if (same_name(child.name, "perspective") || same_name(child.name, "projection")) {
-      warn_unknown_attributes(source, child, {"type", "fov", "near", "far"});
-      camera.fov = number_attribute(source, child, "fov", kFovDegrees, camera.fov);
-      camera.near = number_attribute(source, child, "near", kDistances, camera.near);
-      camera.far = number_attribute(source, child, "far", kDistances, camera.far);
-    } else if (same_name(child.name, "position")) {
-      camera.position = vector_of(source, child, kCoordinates);
-    } else if (same_name(child.name, "view")) {
-      camera.view = vector_of(source, child, kCoordinates);
-    } else if (same_name(child.name, "up")) {
-      camera.up = vector_of(source, child, kCoordinates);
-    } else if (!same_name(child.name, "viewport")) {
-      warn_unknown_child(source, element, child);
-    }
-  }
-  const std::string fault = camera_fault(camera);
-  if (!fault.empty()) fail(source, element, "camera " + named(camera.name) + ": " + fault);
-  reading.project.scene.cameras.push_back(camera);
-}
-
 // Directional or point, as its type says or, without a type, as what it has: direction or position.
 Light::Kind kind_of(const Source& source, const XmlElement& element, bool has_direction, bool has_position) {
   const std::string type = attribute_or(element, "type", has_direction ? "directional" : "point");

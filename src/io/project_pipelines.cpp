@@ -73,6 +73,17 @@ void read_ambient_occlusion(const Source& source, const XmlElement& element, Set
   settings.ao_exponent = number_attribute(source, element, "exponent", kExponents, settings.ao_exponent);
 }
 
+// The attributes of a raster pass.
+void read_sampling(const Source& source, const XmlElement& pass, Settings& settings) {
+  settings.samples =
+      static_cast<int>(integer_attribute(source, pass, "samples", 1, kMostPixelSamples, settings.samples));
+  if (const std::string* text = find_attribute(pass, "filter")) {
+    const std::optional<Filter> filter = parse_filter(*text);
+    if (!filter) fail(source, pass, "filter=" + named(*text) + " is not one of box, tent, mitchell");
+    settings.filter = *filter;
+  }
+}
+
 // True when the element was one of the effects of a trace pass.
 bool read_effect(const Source& source, const XmlElement& element, Settings& settings, Figures& figures) {
   Effects& effects = settings.effects;
@@ -145,8 +156,13 @@ bool read_reference(const Reading& reading, const XmlElement& element, Pipeline&
 
 PassClass read_pass(const Reading& reading, const XmlElement& pass, Pipeline& pipeline, Figures& figures) {
   const Source& source = reading.source;
-  warn_unknown_attributes(source, pass, {"class", "name", "compositing", "seed"});
   const PassClass what = pass_class(source, pass);
+  if (what == PassClass::raster) {
+    warn_unknown_attributes(source, pass, {"class", "name", "compositing", "seed", "samples", "filter"});
+    read_sampling(source, pass, pipeline.settings);
+  } else {
+    warn_unknown_attributes(source, pass, {"class", "name", "compositing", "seed"});
+  }
   if (const std::string* text = find_attribute(pass, "compositing")) {
     const std::optional<Compositing> compositing = parse_compositing(*text);
     if (!compositing) fail(source, pass, "compositing=" + named(*text) + " is neither physical nor report");

@@ -19,6 +19,7 @@ struct Reading {
   bool has_ambient = false;
 };
 
+void read_camera(Reading& reading, const XmlElement& element);
 void read_assets(Reading& reading, const XmlElement& assets);
 
 // The assets have been read: pipelines refer to them by name. `defaults` is what a pipeline starts from.

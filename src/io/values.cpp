@@ -91,4 +91,11 @@ std::optional<Compositing> parse_compositing(std::string_view text) {
   return {};
 }
 
+std::optional<Filter> parse_filter(std::string_view text) {
+  if (text == "box") return Filter::box;
+  if (text == "tent") return Filter::tent;
+  if (text == "mitchell") return Filter::mitchell;
+  return {};
+}
+
 }  // namespace vitral

@@ -23,6 +23,8 @@ inline constexpr Range kRadiances{0, 1e6f};
 inline constexpr Range kTints{0, 1};
 inline constexpr long kMostDepth = 100;
 inline constexpr long kMostSamples = 1024;
+inline constexpr Range kApertures{0, 1e6f};
+inline constexpr Range kTimes{-1e6f, 1e6f};
 
 // A finite decimal number.
 std::optional<float> parse_number(std::string_view text, Range range);
@@ -37,5 +39,6 @@ std::optional<long> parse_samples(std::string_view text);
 
 std::optional<Fresnel> parse_fresnel(std::string_view text);          // exact, schlick, report
 std::optional<Compositing> parse_compositing(std::string_view text);  // physical, report
+std::optional<Filter> parse_filter(std::string_view text);            // box, tent, mitchell
 
 }  // namespace vitral

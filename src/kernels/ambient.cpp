@@ -25,7 +25,8 @@ void make_directions(const PointPacket& points, const Frames& frames, const Ambi
   const Float x = Float(static_cast<float>(s.x)), y = Float(static_cast<float>(s.y));
   for (int g = 0; g < kPacketSize; g += kLanes) {
     if (group_empty(lanes, g)) continue;
-    const Uint h = sample_hash(load(points.key + g), static_cast<uint32_t>(s.sample), settings.sample_step);
+    const Uint h = sample_hash(load(points.key + g), settings.first_sample + static_cast<uint32_t>(s.sample),
+                               settings.sample_step);
     const Float u1 = (x + to_float(h & Uint(0xffffu)) * unit) * side;
     const Float u2 = (y + to_float(h >> 16) * unit) * side;
     const Vec3T<Float> normal = load3(points.gx, points.gy, points.gz, g);

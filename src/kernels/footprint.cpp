@@ -41,7 +41,7 @@ struct Sections {
 };
 inline Sections sections(const RayWidths& widths, const Vec3T<Float>& direction, const Float& t, int g) {
   if (widths.camera) {
-    const Float side = t * Float(widths.camera->step);
+    const Float side = t * Float(widths.camera->footprint);
     return {same(widths.camera->right) * side, same(widths.camera->up) * -side};
   }
   Sections s;

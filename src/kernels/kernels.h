@@ -20,6 +20,9 @@ struct Kernels {
   // Camera rays through the 64 pixel centres of the block whose corner is (x, y); sets all but live.
   void (*primary_rays)(const Pinhole& camera, int x, int y, RayPacket& rays);
 
+  // The same through points of the lens in the pinhole's place.
+  void (*lens_rays)(const Pinhole& camera, const Lens& lens, int x, int y, RayPacket& rays);
+
   // The closest hit of every live ray, cut-outs respected; lanes that are not live get no triangle.
   void (*trace_closest)(const KdView& tree, const RayPacket& rays, HitPacket& hits);
 

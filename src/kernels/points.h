@@ -84,6 +84,7 @@ struct AmbientSettings {
   float distance;                      // rays end here
   uint32_t sample_step = kSampleStep;  // see sample_hash()
   Shortcuts shortcuts = Shortcuts::taken;
+  uint32_t first_sample = 0;  // number of the first one: another one, other rays
 };
 
 }  // namespace vitral

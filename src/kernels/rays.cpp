@@ -3,9 +3,12 @@
 #include "kernels/points.h"
 #include "kernels/tables.h"
 #include "math/fresnel.h"
+#include "math/sampling.h"
+#include "math/strata.h"
 
 namespace vitral {
 namespace VITRAL_ISA {
+
 void primary_rays(const Pinhole& camera, int x, int y, RayPacket& rays) {
   for (int g = 0; g < kPacketSize; g += kLanes) {
     const Uint lane = Uint(static_cast<uint32_t>(g)) + lane_numbers();
@@ -17,6 +20,25 @@ void primary_rays(const Pinhole& camera, int x, int y, RayPacket& rays) {
     store(rays.tmax + g, Float(camera.far));
   }
   rays.tmin = camera.near;
+}
+
+// From the point p of the lens, in its plane, to where the pixel's axis meets the plane in focus: over the
+// depth 1 the direction changes by -p / focus.
+void lens_rays(const Pinhole& camera, const Lens& lens, int x, int y, RayPacket& rays) {
+  primary_rays(camera, x, y, rays);
+  const Vec3T<Float> right{Float(camera.right.x), Float(camera.right.y), Float(camera.right.z)},
+      up{Float(camera.up.x), Float(camera.up.y), Float(camera.up.z)};
+  const Float radius = Float(lens.radius), bend = Float(-1.0f / lens.focus);
+  for (int g = 0; g < kPacketSize; g += kLanes) {
+    const Uint lane = Uint(static_cast<uint32_t>(g)) + lane_numbers();
+    const Uint key = pixel_key_of(Uint(static_cast<uint32_t>(x)) + (lane & Uint(7u)),
+                                  Uint(static_cast<uint32_t>(y)) + (lane >> 3), lens.seed);
+    const auto pair = stratified_pair(lens.index, lens.count, key);
+    const Vec2T<Float> point = disk_point(pair.u, pair.v);
+    const Vec3T<Float> p = right * (radius * point.x) + up * (radius * point.y);
+    store3(rays.ox, rays.oy, rays.oz, g, load3(rays.ox, rays.oy, rays.oz, g) + p);
+    store3(rays.dx, rays.dy, rays.dz, g, load3(rays.dx, rays.dy, rays.dz, g) + p * bend);
+  }
 }
 
 void mirror_rays(const PointPacket& points, RayPacket& rays) {

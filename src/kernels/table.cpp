@@ -12,6 +12,7 @@ const Kernels kTable = {
     VITRAL_NAME(VITRAL_ISA),
     kLanes,
     primary_rays,
+    lens_rays,
     trace_closest,
     closest_blocks,
     trace_any,

@@ -6,6 +6,7 @@ namespace vitral {
 namespace VITRAL_ISA {
 
 void primary_rays(const Pinhole& camera, int x, int y, RayPacket& rays);
+void lens_rays(const Pinhole& camera, const Lens& lens, int x, int y, RayPacket& rays);
 void trace_closest(const KdView& tree, const RayPacket& rays, HitPacket& hits);
 void closest_blocks(const KdView& tree, const RayPacket* rays, int count, Shortcuts shortcuts,
                     HitPacket* hits);

@@ -18,7 +18,8 @@ Pinhole make_pinhole(const Camera& camera, int width, int height) {
           static_cast<float>(step * width / 2),
           static_cast<float>(half_height),
           camera.near,
-          camera.far};
+          camera.far,
+          static_cast<float>(step)};
 }
 
 }  // namespace vitral

@@ -4,17 +4,31 @@
 #include "vitral/scene.h"
 #include "vitral/vec.h"
 
+#include <cstdint>
+
 namespace vitral {
 
 // The ray through pixel centre (x + 0.5, y + 0.5), y down, is
 //   direction = forward + right * ((x + 0.5) * step - center_x) + up * (center_y - (y + 0.5) * step)
-// with orthonormal right, up, forward: its parameter t is the depth, the distance along `forward`.
+// with orthonormal right, up, forward: its parameter t is the depth, the distance along `forward`. Shifted
+// centers look through other points of the pixels, or from another point of a lens.
 struct Pinhole {
   Vec3 origin;
   Vec3 right, up, forward;   // orthonormal
   float step;                // side of a pixel on the plane at depth 1
-  float center_x, center_y;  // half the picture's width and height on that plane
+  float center_x, center_y;  // where the axis meets that plane, from the picture's upper left corner
   float near, far;           // depths; only what lies between is seen
+  float footprint;           // side, on that plane, of the part of a pixel that one sample stands for
+};
+
+// A thin lens in the pinhole's place: points at the depth `focus` are seen where the pinhole sees them,
+// whatever point of the lens is looked through. Each pixel takes points of its own, number `index` of
+// `count`.
+struct Lens {
+  float radius = 0;  // 0: the pinhole
+  float focus = 1;
+  uint32_t index = 0, count = 1;
+  uint32_t seed = 0;
 };
 
 // The tangent of half the vertical field of view is found by own arithmetic, not by the C library.

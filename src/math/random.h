@@ -18,8 +18,12 @@ static inline U hash32(U x) {
 }
 
 // The key of a pixel; of a path that leaves it by branch `branch`; of sample s of a point with a key.
+template <class U>
+static inline U pixel_key_of(const U& x, const U& y, uint32_t seed) {
+  return hash32(hash32(U(hash32(seed)) + x) + y);
+}
 static inline uint32_t pixel_key(int x, int y, uint32_t seed) {
-  return hash32(hash32(hash32(seed) + static_cast<uint32_t>(x)) + static_cast<uint32_t>(y));
+  return pixel_key_of(static_cast<uint32_t>(x), static_cast<uint32_t>(y), seed);
 }
 static inline uint32_t branch_key(uint32_t key, uint32_t branch) {
   return hash32(key ^ (branch * 0x9e3779b9u));

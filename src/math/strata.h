@@ -46,22 +46,4 @@ static inline auto stratified_pair(uint32_t index, uint32_t count, const U& key)
   return Pair<F>{least(within, F(0x1.fffffep-1f)), unit_of_bits(digits)};
 }
 
-// A random order of 0..count-1: the place of `index`. Integers of as many bits as count needs are mixed, one
-// to one, until the place falls below count.
-static inline uint32_t shuffled(uint32_t index, uint32_t count, uint32_t key) {
-  if (count <= 1) return 0;
-  const int bits = 32 - __builtin_clz(count - 1);
-  const uint32_t mask = 0xffffffffu >> (32 - bits);
-  uint32_t x = index;
-  do {
-    for (uint32_t round = 0; round < 3; ++round) {
-      const uint32_t k = hash32(key + round * kSampleStep);
-      x = (x ^ k) & mask;
-      x = (x * (k | 1u)) & mask;
-      x ^= x >> ((bits + 1) / 2);
-    }
-  } while (x >= count);
-  return x;
-}
-
 }  // namespace vitral

@@ -7,7 +7,9 @@ namespace vitral {
 void count_free_rays(const FrameContext& frame, const PointPacket* const* points, int count, PassTally& tally,
                      FreeRays* out, LaneWork* work) {
   const PassTimer timer(tally, Pass::ao);
-  const AmbientSettings settings{frame.ao_strata, frame.settings.ao_distance, frame.sample_step};
+  AmbientSettings settings{frame.ao_strata, frame.settings.ao_distance, frame.sample_step};
+  settings.first_sample =
+      static_cast<uint32_t>(frame.sample) * static_cast<uint32_t>(frame.settings.ao_samples);
   run_ambient(frame, points, count, settings, tally, out, work);
   for (int i = 0; i < count; ++i) {
     tally.rays[static_cast<size_t>(Pass::ao)] +=

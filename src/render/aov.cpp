@@ -19,6 +19,21 @@ bool is_scalar(AovKind kind) {
   }
 }
 
+enum class Gathering { first, mean, sum };
+Gathering gathering_of(AovKind kind) {
+  switch (kind) {
+    case AovKind::position:
+    case AovKind::depth:
+    case AovKind::material:
+    case AovKind::primitive:
+      return Gathering::first;
+    case AovKind::cost:
+      return Gathering::sum;
+    default:
+      return Gathering::mean;
+  }
+}
+
 // What stands where nothing is seen: 0 is a material's and a triangle's number.
 Vec3 nothing_in(AovKind kind) {
   const bool number = kind == AovKind::material || kind == AovKind::primitive;
@@ -42,11 +57,22 @@ AovTargets make_aovs(const Settings& settings, int width, int height, Frame& out
   return targets;
 }
 
-void write_aovs(const AovTargets& targets, const SurfacePacket& s, const LightDetail& light, int lane,
-                size_t pixel) {
-  const auto put = [&](AovKind kind, const Vec3& value) {
-    if (Aov* aov = target(targets, kind)) aov->pixels.pixels[pixel] = value;
-  };
+void put(const FrameContext& frame, const AovTargets& targets, AovKind kind, size_t pixel,
+         const Vec3& value) {
+  Aov* aov = targets.pictures[static_cast<size_t>(kind)];
+  if (!aov) return;
+  Vec3& there = aov->pixels.pixels[pixel];
+  const Gathering gathering = gathering_of(kind);
+  if (frame.settings.samples == 1 || (gathering == Gathering::first && frame.sample == 0)) {
+    there = value;
+  } else if (gathering != Gathering::first) {
+    there += gathering == Gathering::sum ? value : value * narrow(frame.weight);
+  }
+}
+
+void write_aovs(const FrameContext& frame, const AovTargets& targets, const SurfacePacket& s,
+                const LightDetail& light, int lane, size_t pixel) {
+  const auto put = [&](AovKind kind, const Vec3& value) { vitral::put(frame, targets, kind, pixel, value); };
   put(AovKind::position, get(s.points.px, s.points.py, s.points.pz, lane));
   put(AovKind::normal, get(s.points.nx, s.points.ny, s.points.nz, lane));
   put(AovKind::geometric_normal, get(s.points.gx, s.points.gy, s.points.gz, lane));

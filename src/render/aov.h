@@ -30,15 +30,16 @@ struct AovTargets {
   bool any = false;
 };
 
-static inline Aov* target(const AovTargets& targets, AovKind kind) {
-  return targets.pictures[static_cast<size_t>(kind)];
-}
-
 // Makes the pictures that the settings name, in out.aovs.
 AovTargets make_aovs(const Settings& settings, int width, int height, Frame& out);
 
-// Writes what is known of the surface that a pixel sees; `pixel` counts in the crop.
-void write_aovs(const AovTargets& targets, const SurfacePacket& surfaces, const LightDetail& light, int lane,
-                size_t pixel);
+// Adds what a sample saw to a picture, if it is wanted; `pixel` counts in the crop. Numbers, positions and
+// depths have no mean: those are the first sample's. `cost` is the sum, the others are weighted as the
+// colours are.
+void put(const FrameContext& frame, const AovTargets& targets, AovKind kind, size_t pixel, const Vec3& value);
+
+// All that is known of the surface that a pixel sees.
+void write_aovs(const FrameContext& frame, const AovTargets& targets, const SurfacePacket& surfaces,
+                const LightDetail& light, int lane, size_t pixel);
 
 }  // namespace vitral

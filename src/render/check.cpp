@@ -16,6 +16,7 @@ void check_settings(const Settings& s) {
   require(s.crop.width == 0 || (s.crop.x >= 0 && s.crop.y >= 0 && s.crop.width > 0 && s.crop.height > 0 &&
                                 s.crop.x <= s.width - s.crop.width && s.crop.y <= s.height - s.crop.height),
           "the crop must lie inside the picture");
+  require(s.samples >= 1 && s.samples <= kMostPixelSamples, "the number of samples must be 1 to 65536");
   const int n = static_cast<int>(square_root(static_cast<float>(s.ao_samples)) + 0.5f);
   require(s.ao_samples >= 1 && s.ao_samples <= 1024 && n * n == s.ao_samples,
           "the number of ambient samples must be a square from 1 to 1024");
@@ -27,6 +28,20 @@ void check_settings(const Settings& s) {
   for (const std::string& name : s.aovs) {
     require(std::find(std::begin(kAovNames), std::end(kAovNames), name) != std::end(kAovNames),
             "unknown auxiliary picture");
+  }
+}
+
+static void check_motion(const Camera& c) {
+  if (!(c.shutter_open <= c.shutter_close && std::isfinite(c.shutter_open) && std::isfinite(c.shutter_close)))
+    throw UsageError("the shutter must not close before it opens");
+  for (size_t i = 0; i < c.motion.size(); ++i) {
+    const CameraKey& key = c.motion[i];
+    if (!std::isfinite(key.time) || (i > 0 && !(key.time > c.motion[i - 1].time)))
+      throw UsageError("the camera's keys must follow each other in time");
+    Camera there = c;
+    there.motion.clear();
+    there.position = key.position, there.view = key.view, there.up = key.up;
+    check_camera(there);
   }
 }
 
@@ -42,6 +57,9 @@ void check_camera(const Camera& c) {
   if (!(c.fov > 0 && c.fov < 180)) throw UsageError("the field of view must be between 0 and 180 degrees");
   if (!(c.near > 0 && c.far > c.near && std::isfinite(c.far)))
     throw UsageError("the camera needs 0 < near < far");
+  if (!(c.aperture >= 0 && std::isfinite(c.aperture))) throw UsageError("the aperture must not be negative");
+  if (!(c.focus > 0 && std::isfinite(c.focus))) throw UsageError("the focus must be greater than 0");
+  check_motion(c);
 }
 
 }  // namespace vitral

@@ -33,8 +33,9 @@ struct FrameContext {
   int ao_strata;                       // n of n x n samples
   std::vector<float> ao_of_free_rays;  // (k / N)^exponent for k = 0..N
   Count count = Count::nothing;
-  int sample = 0;  // of settings.samples: this frame is one of them
-  float time = 0;  // when it is seen
+  int sample = 0;     // of settings.samples: which one this frame is rendered for
+  double weight = 1;  // of the sample in the picture
+  Lens lens;          // of traced camera rays
 };
 
 // Throws UsageError when the instruction set is not there. Refers to its arguments; `raster` is null.

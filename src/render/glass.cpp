@@ -193,8 +193,9 @@ void begin_paths(const FrameContext& frame, const PointPacket& points, int x, in
     paths[lane] = {};
     paths[lane].origin = frame.camera.origin;
     paths[lane].direction = -get(points.vx, points.vy, points.vz, lane);
-    // A pixel's side is `step` at depth 1: at distance 1 it is less by the cosine towards the axis.
-    paths[lane].cone = {0, frame.camera.step * dot(paths[lane].direction, frame.camera.forward)};
+    // The side of what a sample stands for is given at depth 1: at distance 1 it is less by the cosine
+    // towards the axis.
+    paths[lane].cone = {0, frame.camera.footprint * dot(paths[lane].direction, frame.camera.forward)};
     paths[lane].weight = {1, 1, 1};
     paths[lane].key = points.key[lane];
     paths[lane].pixel = static_cast<uint16_t>((y + lane / kBlockSide) * kTileSide + x + lane % kBlockSide);

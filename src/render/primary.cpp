@@ -40,8 +40,13 @@ void find_primary_hits(const FrameContext& frame, int tile_x, int tile_y, const 
   }
   for (size_t i = 0; i < kTileBlocks; ++i) {
     const int block = kBlocksInOrder[i];
-    frame.kernels.primary_rays(frame.camera, tile_x + block % kTileBlocksAcross * kBlockSide,
-                               tile_y + block / kTileBlocksAcross * kBlockSide, out.rays[i]);
+    const int x = tile_x + block % kTileBlocksAcross * kBlockSide,
+              y = tile_y + block / kTileBlocksAcross * kBlockSide;
+    if (frame.lens.radius > 0) {
+      frame.kernels.lens_rays(frame.camera, frame.lens, x, y, out.rays[i]);
+    } else {
+      frame.kernels.primary_rays(frame.camera, x, y, out.rays[i]);
+    }
     out.rays[i].live = lanes[i];
     count_rays(tally, Pass::raster, lanes[i]);
   }

@@ -1,7 +1,8 @@
 // The table of contents: one frame from beginning to end.
 //
 //   build      triangles side by side, kd-tree                       accelerator.cpp
-//   setup      triangles on the screen, sorted into bins              raster/frame.cpp
+//   per sample of the pixels                                        samples.cpp
+//     setup      triangles on the screen, sorted into bins           raster/frame.cpp
 //   per tile of 32x32 pixels, on all threads, in any order:           tile.cpp
 //     primary    what each pixel sees                                primary.cpp
 //     surface    position, normals, material there                   surface.cpp
@@ -13,6 +14,7 @@
 #include "math/elementary.h"
 #include "render/frame.h"
 #include "render/kernel_choice.h"
+#include "render/samples.h"
 #include "render/tile.h"
 #include "vitral/error.h"
 
@@ -53,6 +55,42 @@ void collect_stats(const FrameContext& frame, const std::vector<Worker>& workers
   }
 }
 
+// What the caller's progress adds up.
+struct ProgressSum {
+  std::mutex mutex;
+  size_t tiles = 0;
+  uint64_t rays = 0;
+};
+
+// All tiles of one sample.
+void render_sample(FrameContext& frame, ThreadPool& pool, Control& control, std::vector<Worker>& workers,
+                   RasterFrame& raster, FrameTargets& targets, ProgressSum& progress) {
+  const Settings& settings = frame.settings;
+  const Rectangle crop = crop_of(settings);
+  RasterView raster_view{};
+  if (settings.primary == Primary::raster) {
+    const PassTimer timer(workers[0].tally, Pass::raster);
+    SetupTimes times;
+    raster_view = setup_raster(frame, crop, pool, control, raster, times);
+    frame.raster = &raster_view;
+  }
+  const Tiles tiles = tiles_of(crop);
+  const size_t count = static_cast<size_t>(tiles.across) * static_cast<size_t>(tiles.down);
+  const double all = static_cast<double>(count) * settings.samples;
+  pool.parallel_for(count, [&](size_t i, size_t w) {
+    if (control.stop.load(std::memory_order_relaxed)) throw Interrupted();
+    Worker& worker = workers[w];
+    const auto before = worker.tally.rays;
+    render_tile(frame, crop, (tiles.x + static_cast<int>(i) % tiles.across) * kTileSide,
+                (tiles.y + static_cast<int>(i) / tiles.across) * kTileSide, worker, targets);
+    if (!control.on_progress) return;
+    const std::lock_guard<std::mutex> lock(progress.mutex);
+    for (size_t p = 0; p < kPasses; ++p) progress.rays += worker.tally.rays[p] - before[p];
+    control.on_progress({"render", static_cast<double>(++progress.tiles) / all, progress.rays});
+  });
+  frame.raster = nullptr;
+}
+
 }  // namespace
 
 Frame render_frame(const Scene& scene, const Accelerator& accelerator, const Camera& camera,
@@ -66,38 +104,19 @@ Frame render_frame(const Scene& scene, const Accelerator& accelerator, const Cam
   Frame out;
   if (settings.keep_radiance) out.radiance = Image<Vec3>(crop.width, crop.height);
   out.pixels = Image<Rgb8>(crop.width, crop.height);
-  const AovTargets targets = make_aovs(settings, crop.width, crop.height, out);
+  FrameTargets targets{out, make_aovs(settings, crop.width, crop.height, out), {}};
+  if (settings.samples > 1) targets.sums = Image<Vec3d>(crop.width, crop.height, {0, 0, 0});
 
-  PassTally setup;
-  RasterFrame raster;
-  RasterView raster_view{};
-  if (settings.primary == Primary::raster) {
-    const PassTimer timer(setup, Pass::raster);
-    SetupTimes times;
-    raster_view = setup_raster(frame, crop, pool, control, raster, times);
-    frame.raster = &raster_view;
-  }
-
-  const Tiles tiles = tiles_of(crop);
-  const size_t count = static_cast<size_t>(tiles.across) * static_cast<size_t>(tiles.down);
   std::vector<Worker> workers(pool.workers());
-  std::mutex progress_mutex;
-  size_t done = 0;
-  uint64_t rays = 0;
-  pool.parallel_for(count, [&](size_t i, size_t w) {
-    if (control.stop.load(std::memory_order_relaxed)) throw Interrupted();
-    Worker& worker = workers[w];
-    const auto before = worker.tally.rays;
-    render_tile(frame, crop, (tiles.x + static_cast<int>(i) % tiles.across) * kTileSide,
-                (tiles.y + static_cast<int>(i) / tiles.across) * kTileSide, worker, out, targets);
-    if (!control.on_progress) return;
-    const std::lock_guard<std::mutex> lock(progress_mutex);
-    for (size_t p = 0; p < kPasses; ++p) rays += worker.tally.rays[p] - before[p];
-    control.on_progress({"render", static_cast<double>(++done) / static_cast<double>(count), rays});
-  });
-
-  workers[0].tally.seconds[static_cast<size_t>(Pass::raster)] +=
-      setup.seconds[static_cast<size_t>(Pass::raster)];
+  RasterFrame raster;
+  ProgressSum progress;
+  for (const PixelSample& sample : pixel_samples(settings, camera)) {
+    const SampleView view = sample_view(camera_at(camera, sample.time), settings, sample);
+    frame.camera = view.pinhole, frame.lens = view.lens;
+    frame.weight = sample.weight;
+    render_sample(frame, pool, control, workers, raster, targets, progress);
+    ++frame.sample;
+  }
   collect_stats(frame, workers, out.stats);
   out.stats.frame_seconds = seconds_since(start);
   return out;
@@ -116,7 +135,10 @@ FrameContext make_context(const Scene& scene, const Accelerator& accelerator, co
                      0,
                      0,
                      {},
-                     what_to_count(settings)};
+                     what_to_count(settings),
+                     0,
+                     1,
+                     {}};
   frame.least_importance = greatest(settings.min_importance, 1.0f / 4096);
   frame.ao_strata = static_cast<int>(square_root(static_cast<float>(settings.ao_samples)) + 0.5f);
   for (int k = 0; k <= settings.ao_samples; ++k) {

@@ -14,24 +14,35 @@ size_t frame_pixel(const Rectangle& crop, int x, int y) {
   return static_cast<size_t>(y - crop.y) * static_cast<size_t>(crop.width) + static_cast<size_t>(x - crop.x);
 }
 
-// Moves the tile's colours to the frame.
-void resolve_tile(const Rectangle& crop, int tile_x, int tile_y, Worker& worker, Frame& out,
-                  const AovTargets& targets) {
+// Adds the tile's colours to those of the samples before, and becomes the sum.
+void add_samples(const FrameContext& frame, Vec3* colors, Vec3d* sums, size_t count) {
+  for (size_t i = 0; i < count; ++i) {
+    const Vec3d color = to_double(colors[i]) * frame.weight;
+    sums[i] = frame.sample == 0 ? color : sums[i] + color;
+    colors[i] = to_float(sums[i]);
+  }
+}
+
+// Moves the tile's colours to the frame, and encodes them when no sample is to come.
+void resolve_tile(const FrameContext& frame, const Rectangle& crop, int tile_x, int tile_y, Worker& worker,
+                  FrameTargets& out) {
   const PassTimer timer(worker.tally, Pass::resolve);
+  const bool last = frame.sample + 1 == frame.settings.samples;
   const int x0 = std::max(tile_x, crop.x), x1 = std::min(tile_x + kTileSide, crop.x + crop.width);
   const int y0 = std::max(tile_y, crop.y), y1 = std::min(tile_y + kTileSide, crop.y + crop.height);
   for (int y = y0; y < y1; ++y) {
-    encode_row(&worker.color[static_cast<size_t>((y - tile_y) * kTileSide + (x0 - tile_x))],
-               static_cast<size_t>(x1 - x0), &out.pixels.pixels[frame_pixel(crop, x0, y)], worker.not_finite);
+    Vec3* const colors = &worker.color[static_cast<size_t>((y - tile_y) * kTileSide + (x0 - tile_x))];
+    const size_t first = frame_pixel(crop, x0, y), count = static_cast<size_t>(x1 - x0);
+    if (frame.settings.samples > 1) add_samples(frame, colors, &out.sums.pixels[first], count);
+    if (last) encode_row(colors, count, &out.frame.pixels.pixels[first], worker.not_finite);
     for (int x = x0; x < x1; ++x) {
       const size_t here = static_cast<size_t>((y - tile_y) * kTileSide + (x - tile_x));
       const size_t there = frame_pixel(crop, x, y);
-      if (!out.radiance.pixels.empty()) out.radiance.pixels[there] = worker.color[here];
-      if (Aov* aov = target(targets, AovKind::reflection))
-        aov->pixels.pixels[there] = worker.reflection[here];
-      if (Aov* aov = target(targets, AovKind::refraction))
-        aov->pixels.pixels[there] = worker.refraction[here];
-      if (Aov* aov = target(targets, AovKind::cost)) aov->pixels.pixels[there] = {worker.cost[here], 0, 0};
+      if (last && !out.frame.radiance.pixels.empty()) out.frame.radiance.pixels[there] = worker.color[here];
+      if (!out.aovs.any) continue;
+      put(frame, out.aovs, AovKind::reflection, there, worker.reflection[here]);
+      put(frame, out.aovs, AovKind::refraction, there, worker.refraction[here]);
+      if (frame.count == Count::pixels) put(frame, out.aovs, AovKind::cost, there, {worker.cost[here], 0, 0});
     }
   }
 }
@@ -78,10 +89,10 @@ uint64_t lanes_inside(const Rectangle& crop, int x, int y) {
 }
 
 void render_tile(const FrameContext& frame, const Rectangle& crop, int tile_x, int tile_y, Worker& worker,
-                 Frame& out, const AovTargets& targets) {
+                 FrameTargets& out) {
   worker.color.assign(kTilePixels, frame.scene.background.color);
   PathSums sums{worker.color.data(), nullptr, nullptr, nullptr};
-  if (targets.any) {
+  if (out.aovs.any) {
     worker.reflection.assign(kTilePixels, Vec3{0, 0, 0});
     worker.refraction.assign(kTilePixels, Vec3{0, 0, 0});
     sums = {worker.color.data(), worker.reflection.data(), worker.refraction.data(), nullptr};
@@ -129,18 +140,18 @@ void render_tile(const FrameContext& frame, const Rectangle& crop, int tile_x, i
     begin_paths(frame, surfaces.points, corner_x[i] - tile_x, corner_y[i] - tile_y, camera_paths);
     for (uint64_t left = surfaces.points.live; left != 0; left &= left - 1) {
       const int lane = __builtin_ctzll(left);
-      ++worker.covered;
+      if (frame.sample == 0) ++worker.covered;
       worker.color[camera_paths[lane].pixel] = lit[i].light.color[lane];
       if (sums.cost) sums.cost[camera_paths[lane].pixel] += lit[i].detail.work.work[lane];
-      if (targets.any)
-        write_aovs(targets, surfaces, lit[i].detail, lane,
+      if (out.aovs.any)
+        write_aovs(frame, out.aovs, surfaces, lit[i].detail, lane,
                    frame_pixel(crop, corner_x[i] + lane % kBlockSide, corner_y[i] + lane / kBlockSide));
     }
     spawn_paths(frame, surfaces, camera_paths, worker.paths.current);
   }
   trace_paths(frame, worker.paths, worker.tally, sums);
 
-  resolve_tile(crop, tile_x, tile_y, worker, out, targets);
+  resolve_tile(frame, crop, tile_x, tile_y, worker, out);
 }
 
 }  // namespace vitral

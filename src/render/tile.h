@@ -31,9 +31,17 @@ struct Worker {
   uint64_t covered = 0, not_finite = 0;
 };
 
+// Where the frame goes.
+struct FrameTargets {
+  Frame& frame;
+  AovTargets aovs;
+  Image<Vec3d> sums;  // of the samples so far; empty with one sample
+};
+
 // Carries one tile through all passes while it is in cache. (tile_x, tile_y) is its corner's pixel in
-// the frame; only pixels of the crop are rendered, into the pictures of `out`.
+// the frame; only pixels of the crop are rendered, into the pictures of `out`, where the samples of a pixel
+// add up.
 void render_tile(const FrameContext& frame, const Rectangle& crop, int tile_x, int tile_y, Worker& worker,
-                 Frame& out, const AovTargets& targets);
+                 FrameTargets& out);
 
 }  // namespace vitral
