@@ -64,6 +64,16 @@ TEST(Options, ReadsEveryOptionOfRender) {
                                    "0.25",
                                    "--far",
                                    "500",
+                                   "--samples",
+                                   "16",
+                                   "--filter",
+                                   "mitchell",
+                                   "--aperture",
+                                   "0.25",
+                                   "--focus",
+                                   "3.5",
+                                   "--shutter",
+                                   "-1,0.5",
                                    "--sun",
                                    "1,-1,0",
                                    "--effects",
@@ -108,6 +118,12 @@ TEST(Options, ReadsEveryOptionOfRender) {
   EXPECT_EQ(o.fov, 35.5f);
   EXPECT_EQ(o.near, 0.25f);
   EXPECT_EQ(o.far, 500);
+  EXPECT_EQ(o.samples, 16);
+  EXPECT_EQ(o.filter, Filter::mitchell);
+  EXPECT_EQ(o.aperture, 0.25f);
+  EXPECT_EQ(o.focus, 3.5f);
+  EXPECT_EQ(o.shutter->open, -1);
+  EXPECT_EQ(o.shutter->close, 0.5f);
   EXPECT_EQ(*o.sun, (Vec3{1, -1, 0}));
   EXPECT_TRUE(o.effects->shadows && o.effects->ambient_occlusion);
   EXPECT_FALSE(o.effects->reflection || o.effects->refraction);
@@ -175,6 +191,11 @@ TEST(Options, RefusesValuesOutOfRange) {
       {"--near", {"0", "-1", "nan"}},
       {"--eye", {"1,2", "1,2,3,4", "1,,2", "1,2,x", ",1,2", "1,2,3,", "1,2,nan", "1e30,0,0"}},
       {"--view", {"0,0,0"}},
+      {"--samples", {"0", "-1", "65537", "1.5", ""}},
+      {"--filter", {"gauss", ""}},
+      {"--aperture", {"-1", "nan"}},
+      {"--focus", {"0", "-2"}},
+      {"--shutter", {"1", "2,1", "0,1,2", "a,b", ""}},
       {"--sun", {"0,0,0"}},
       {"--ao-samples", {"0", "2", "10", "1025", "1089", "-4", "4.0"}},
       {"--ao-distance", {"0", "-1"}},

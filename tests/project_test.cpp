@@ -275,5 +275,62 @@ TEST(Project, SaysWhichFileIsMissing) {
   EXPECT_EQ(warnings, Warnings{(folder / "p.xml") + ":2: " + (folder / "b.mtl") + ": no such file"});
 }
 
+TEST(Project, ReadsLensesShuttersAndMotion) {
+  const Folder folder;
+  Warnings warnings;
+  const Project project = folder.read(project_with_assets(R"(<cameras><camera name='c'>
+<motion><key time='-1'/><key time='0.5'><position>1 2 3</position></key>
+<key time='2'><view>1 0 0</view><up>0 0 1</up></key></motion>
+<position>0 0 5</position><view>0 0 -2</view>
+<lens aperture='0.25' focus='4'/><shutter open='0.5' close='0.75'/>
+</camera></cameras>)"),
+                                      &warnings);
+  EXPECT_EQ(warnings, Warnings{});
+  const Camera& c = project.scene.cameras.at(0);
+  EXPECT_EQ(c.aperture, 0.25f);
+  EXPECT_EQ(c.focus, 4);
+  EXPECT_EQ(c.shutter_open, 0.5f);
+  EXPECT_EQ(c.shutter_close, 0.75f);
+  ASSERT_EQ(c.motion.size(), 3u);
+  EXPECT_EQ(c.motion[0].position, (Vec3{0, 0, 5})) << "the first key starts from the camera";
+  EXPECT_EQ(c.motion[0].view, (Vec3{0, 0, -2}));
+  EXPECT_EQ(c.motion[1].position, (Vec3{1, 2, 3}));
+  EXPECT_EQ(c.motion[1].view, (Vec3{0, 0, -2})) << "what a key leaves out is as before";
+  EXPECT_EQ(c.motion[2].position, (Vec3{1, 2, 3}));
+  EXPECT_EQ(c.motion[2].up, (Vec3{0, 0, 1}));
+  EXPECT_EQ(c.motion[2].time, 2);
+}
+
+TEST(Project, RefusesLensesAndMotionThatMakeNoSense) {
+  const Folder folder;
+  const auto camera = [&](const std::string& inside) {
+    return folder.complaint(
+        project_with_assets("<cameras><camera name='c'>\n" + inside + "</camera></cameras>"));
+  };
+  EXPECT_NE(camera("<lens aperture='-1'/>"), "");
+  EXPECT_NE(camera("<lens focus='0'/>"), "");
+  EXPECT_EQ(camera("<shutter open='1' close='0.5'/>"), "p.xml:3: the shutter closes before it opens");
+  EXPECT_EQ(camera("<motion><key/></motion>"), "p.xml:3: this key has no time");
+  EXPECT_EQ(camera("<motion><key time='1'/><key time='1'/></motion>"),
+            "p.xml:3: this key is not later than the one before");
+  EXPECT_NE(camera("<motion><key time='1'><view>0 1 0</view></key></motion>"), "");
+}
+
+TEST(Project, ARasterPassSaysHowManySamples) {
+  const Folder folder;
+  const auto pipelines = [&](const std::string& attributes) {
+    return "<project><assets>" + std::string(kScenes) + kCamera +
+           "</assets>\n<pipelines><pipeline name='p'><pass class='raster' " + attributes +
+           "/></pipeline></pipelines></project>";
+  };
+  const Project project = folder.read(pipelines("samples='16' filter='tent'"));
+  EXPECT_EQ(project.pipelines[0].settings.samples, 16);
+  EXPECT_EQ(project.pipelines[0].settings.filter, Filter::tent);
+  EXPECT_NE(folder.complaint(pipelines("samples='0'")), "");
+  EXPECT_NE(folder.complaint(pipelines("samples='65537'")), "");
+  EXPECT_EQ(folder.complaint(pipelines("filter='sharp'")),
+            "p.xml:2: filter='sharp' is not one of box, tent, mitchell");
+}
+
 }  // namespace
 }  // namespace vitral
