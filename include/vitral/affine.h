@@ -37,6 +37,34 @@ static inline Vec3T<F> transform_normal(const Affine& inverse, const Vec3T<F>& n
 // First b, then a. Computed in double, rounded once.
 Affine operator*(const Affine& a, const Affine& b);
 
+// The same map in double. An inverse that were rounded to float would take the points of a squashed, turned
+// body off its surface by as many times rounding as its length is larger than its width.
+struct PreciseAffine {
+  Vec3d x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
+  Vec3d origin{0, 0, 0};
+};
+PreciseAffine to_double(const Affine& a);
+PreciseAffine precise_inverse(const Affine& a);  // as inverse()
+
+template <class D>
+static inline Vec3T<D> transform_vector(const PreciseAffine& a, const Vec3T<D>& v) {
+  return {(D(a.x.x) * v.x + D(a.y.x) * v.y) + D(a.z.x) * v.z,
+          (D(a.x.y) * v.x + D(a.y.y) * v.y) + D(a.z.y) * v.z,
+          (D(a.x.z) * v.x + D(a.y.z) * v.y) + D(a.z.z) * v.z};
+}
+template <class D>
+static inline Vec3T<D> transform_point(const PreciseAffine& a, const Vec3T<D>& p) {
+  return transform_vector(a, p) + Vec3T<D>{D(a.origin.x), D(a.origin.y), D(a.origin.z)};
+}
+template <class D>
+static inline Vec3T<D> transform_normal(const PreciseAffine& inverse, const Vec3T<D>& n) {
+  return {(D(inverse.x.x) * n.x + D(inverse.x.y) * n.y) + D(inverse.x.z) * n.z,
+          (D(inverse.y.x) * n.x + D(inverse.y.y) * n.y) + D(inverse.y.z) * n.z,
+          (D(inverse.z.x) * n.x + D(inverse.z.y) * n.y) + D(inverse.z.z) * n.z};
+}
+// Greater than 0: left stays left. Less: mirrored.
+double determinant(const Affine& a);
+
 // Throws nothing: a map that flattens space, or whose entries are not finite, has no inverse, and comes out
 // with entries that are not finite.
 Affine inverse(const Affine& a);

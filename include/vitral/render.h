@@ -87,7 +87,8 @@ struct PassStats {
 struct Stats {
   std::string isa;
   int threads = 0;
-  size_t triangles = 0, dropped_triangles = 0;
+  size_t triangles = 0;  // of the mesh and of all instances; a shape counts as one
+  size_t dropped_triangles = 0;
   size_t tree_nodes = 0, tree_bytes = 0;
   double build_seconds = 0, frame_seconds = 0;  // wall clock
   std::vector<PassStats> passes;                // raster, shadows, reflection, refraction, ao, shade, resolve

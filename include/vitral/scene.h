@@ -160,5 +160,7 @@ struct Scene {
 };
 
 Box bounds(const Mesh& mesh);  // of the positions that triangles use; empty without triangles
+// The same and of all objects that have an end, those that move at all their keys.
+Box bounds(const Scene& scene);
 
 }  // namespace vitral

@@ -44,13 +44,30 @@ std::string texture_name(const Scene& scene, int index) {
   return index == kNoTexture ? "" : scene.textures[static_cast<size_t>(index)].name;
 }
 
-// How many triangles each material has.
+// How many triangles each material has, in the mesh and in models.
 std::vector<size_t> triangles_of_materials(const Scene& scene) {
   std::vector<size_t> counts(scene.materials.size());
-  for (const uint32_t material : scene.mesh.triangle_material) {
-    if (material < counts.size()) ++counts[material];
-  }
+  const auto add = [&](const Mesh& mesh) {
+    for (const uint32_t material : mesh.triangle_material) {
+      if (material < counts.size()) ++counts[material];
+    }
+  };
+  add(scene.mesh);
+  for (const Mesh& model : scene.models) add(model);
   return counts;
+}
+
+struct ObjectCounts {
+  size_t instances = 0, shapes = 0, triangles = 0;  // those of instances
+};
+ObjectCounts count_objects(const Scene& scene) {
+  ObjectCounts c;
+  for (const Object& object : scene.objects) {
+    const bool mesh = object.shape == Shape::mesh;
+    ++(mesh ? c.instances : c.shapes);
+    if (mesh) c.triangles += scene.models[object.model].triangles.size();
+  }
+  return c;
 }
 
 std::string in_words(const Vec3& v) {
@@ -65,13 +82,18 @@ std::string in_words(const Vec3& v) {
 
 std::string as_text(const Job& job) {
   const Scene& scene = job.project.scene;
-  const Box box = bounds(scene.mesh);
+  const Box box = bounds(scene);
   const auto count = [](size_t n, const char* what) { return std::to_string(n) + " " + what; };
   std::string text = job.input + "\n";
   text += "mesh: " + count(scene.mesh.triangles.size(), "triangles, ") +
           count(scene.mesh.positions.size(), "vertices, ") + count(scene.mesh.normals.size(), "normals, ") +
           count(scene.mesh.texcoords.size(), "texture coordinates, ") +
           count(scene.dropped_triangles, "triangles dropped\n");
+  if (!scene.objects.empty()) {
+    const ObjectCounts c = count_objects(scene);
+    text += "objects: " + count(scene.models.size(), "models, ") + count(c.instances, "instances with ") +
+            count(c.triangles, "triangles, ") + count(c.shapes, "shapes\n");
+  }
   text += "bounds: " + in_words(box.min) + " to " + in_words(box.max) + "\n";
 
   text += count(scene.materials.size(), "materials\n");
@@ -155,7 +177,8 @@ void add_project(JsonWriter& json, const Job& job) {
 
 std::string as_json(const Job& job) {
   const Scene& scene = job.project.scene;
-  const Box box = bounds(scene.mesh);
+  const Box box = bounds(scene);
+  const ObjectCounts objects = count_objects(scene);
   JsonWriter json;
   json.begin_object()
       .add("input", job.input)
@@ -164,6 +187,10 @@ std::string as_json(const Job& job) {
       .add("normals", uint64_t{scene.mesh.normals.size()})
       .add("texcoords", uint64_t{scene.mesh.texcoords.size()})
       .add("dropped_triangles", uint64_t{scene.dropped_triangles})
+      .add("models", uint64_t{scene.models.size()})
+      .add("instances", uint64_t{objects.instances})
+      .add("instanced_triangles", uint64_t{objects.triangles})
+      .add("shapes", uint64_t{objects.shapes})
       .begin_object("bounds")
       .add("min", box.min)
       .add("max", box.max)

@@ -113,6 +113,38 @@ void check_frame(const Job& job, const Options& options) {
   fail(job.input, reason);
 }
 
+bool has_plane(const Scene& scene) {
+  return std::any_of(scene.objects.begin(), scene.objects.end(),
+                     [](const Object& object) { return object.shape == Shape::plane; });
+}
+
+// A box's corners as a mesh; what lies between them does not matter.
+void add_box(const Box& b, Mesh& mesh) {
+  if (is_empty(b)) return;
+  const uint32_t first = static_cast<uint32_t>(mesh.positions.size());
+  for (uint32_t i = 0; i < 8; ++i) {
+    mesh.positions.push_back(
+        {i & 1 ? b.max.x : b.min.x, i & 2 ? b.max.y : b.min.y, i & 4 ? b.max.z : b.min.z});
+    mesh.triangles.push_back({first + i, first + (i + 1) % 8, first + (i + 2) % 8});
+  }
+}
+
+// Something that stands where the scene does, for the automatic camera: the mesh, and the boxes of objects.
+Mesh stand_in(const Scene& scene) {
+  Mesh mesh;
+  mesh.positions = scene.mesh.positions;
+  mesh.triangles = scene.mesh.triangles;
+  Scene one;
+  for (const Mesh& model : scene.models) add_box(bounds(model), one.models.emplace_back());
+  constexpr size_t kMost = 4096;  // evenly taken, they tell as much as all
+  for (size_t i = 0; i < scene.objects.size(); i += scene.objects.size() / kMost + 1) {
+    one.objects = {scene.objects[i]};
+    add_box(bounds(one), mesh);
+  }
+  if (mesh.triangles.empty()) add_box({{-1, -1, -1}, {1, 1, 1}}, mesh);  // planes alone
+  return mesh;
+}
+
 // Camera and, for a bare mesh, light from the mesh itself. Where the user says neither where to stand
 // nor where to look, several views are tried.
 void find_view(Job& job, const Options& options) {
@@ -121,17 +153,19 @@ void find_view(Job& job, const Options& options) {
   const float aspect = static_cast<float>(settings.width) / static_cast<float>(settings.height);
   // Products of edges and distances must not vanish among the floats.
   constexpr double kLeastDiagonal = 1e-30;
-  const Box box = bounds(scene.mesh);
+  const Mesh around = scene.objects.empty() ? Mesh{} : stand_in(scene);
+  const Mesh& mesh = scene.objects.empty() ? scene.mesh : around;
+  const Box box = bounds(mesh);
   const double diagonal = length(to_double(box.max) - to_double(box.min));
   if (diagonal > 0 && diagonal < kLeastDiagonal)
     fail(job.input, "the mesh is too small for a camera to see it");
   const ViewWishes wishes{options.eye, options.view, options.up, options.fov, options.near, options.far};
   View view;
-  if (options.eye || options.view) {
-    view.camera = auto_camera(scene.mesh, aspect, wishes);
+  if (options.eye || options.view || !scene.objects.empty()) {
+    view.camera = auto_camera(mesh, aspect, wishes);
   } else {
     Control control;
-    view = best_view(candidate_views(scene.mesh, aspect, wishes), triangle_counter(scene, settings, control));
+    view = best_view(candidate_views(mesh, aspect, wishes), triangle_counter(scene, settings, control));
   }
   job.camera = view.camera;
   const Vec3 middle = center(core(scene.mesh)) - view.camera.position;
@@ -139,7 +173,7 @@ void find_view(Job& job, const Options& options) {
   override_lens(options, job.camera);
   if (job.kind == InputKind::project) return;
   light_automatically(view, scene);
-  if (!options.ao_distance) settings.ao_distance = auto_ao_distance(core(scene.mesh));
+  if (!options.ao_distance) settings.ao_distance = auto_ao_distance(core(mesh));
 }
 
 // The first directional light takes the direction; a project without one gets a white sun.
@@ -188,8 +222,7 @@ void load_job(Job& job, const Options& options) {
   const auto start = std::chrono::steady_clock::now();
   Scene& scene = job.project.scene;
   load_assets(job.project, job.pipeline, job.warnings);
-  const Box box = bounds(scene.mesh);
-  if (is_empty(box)) fail(job.input, "there is no triangle in it");
+  if (is_empty(bounds(scene)) && !has_plane(scene)) fail(job.input, "there is no triangle in it");
 
   if (job.automatic && options.command != Command::info) find_view(job, options);
   if (options.sun) turn_sun(*options.sun, scene);

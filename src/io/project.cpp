@@ -1,6 +1,7 @@
 #include "io/project.h"
 
 #include "io/mesh_file.h"
+#include "io/project_objects.h"
 #include "io/project_reading.h"
 #include "io/text.h"
 #include "io/xml.h"
@@ -83,13 +84,16 @@ Project read_project(const std::string& path, Warnings& warnings) {
       warn_unknown_child(reading.source, root, child);
     }
   }
-  if (project.meshes.empty()) fail(reading.source, root, "the project names no scene file");
+  resolve_models(reading);
+  if (project.meshes.empty() && project.object_count == 0)
+    fail(reading.source, root, "the project names no scene file");
   if (project.pipelines.empty()) fail(reading.source, root, "the project has no pipeline");
   return project;
 }
 
 void load_assets(Project& project, const Pipeline& pipeline, Warnings& warnings) {
   for (const MeshFile& mesh : project.meshes) load_mesh(mesh.path, project.scene, warnings);
+  load_objects(project, warnings);
   const Source source{project.file, warnings};
   for (const MaterialMap& map : pipeline.maps) apply(map, source, project.scene);
 }

@@ -8,6 +8,14 @@
 //   <project width="1024" height="1024">                 size of the picture, 1..16384
 //     <assets>
 //       <scenes><scene name="..."><file name="a.obj"/>   any number of .obj and .ply; all are loaded
+//         <model name="tree"><file name="tree.obj"/></model>   loaded, but placed only by instances:
+//         <instance model="tree" material="...">TRANSFORMS</instance>   with a material for all of it, or its
+//         <instances model="tree" file="forest.txt"/>   own; a line for each: x y z [scale [degrees about y]]
+//         <sphere center="0 0 0" radius="1" material="...">TRANSFORMS</sphere>   exact shapes; what is left
+//         <box min="-1 -1 -1" max="1 1 1"/>                                      out is as written here
+//         <cylinder from="0 -1 0" to="0 1 0" radius="1"/>
+//         <disk center="0 0 0" normal="0 1 0" radius="1"/>
+//         <plane point="0 0 0" normal="0 1 0"/>   without end
 //       <viewports><viewport name="..."><bgcolor COLOR/>  the background
 //       <cameras><camera name="...">
 //         <perspective fov="60" near="0.1" far="1000"/>  fov vertical, in degrees
@@ -31,6 +39,12 @@
 //           <refraction maxDepth="5" minImportance="0.005" fresnel="exact|schlick|report"/>
 //           <ambientOcclusion samples="16" distance="0.5" exponent="1"/>   samples: a square number
 //         <pass class="combine" name="..."/>       (other name: quad)
+//
+// TRANSFORMS are any number of <translate VECTOR/>, <rotate axis="0 1 0" degrees="30"/>, <scale VECTOR/> or
+// <scale>2</scale> and <matrix>, three rows of four numbers, each applied after the ones before it, about the
+// origin of the world. Besides, <motion> holds in order of time <key time="0">: <translate/> and <rotate/>,
+// which go after them; between keys what moves is displaced and turned evenly. The materials of objects have
+// their names from the meshes' own libraries or from a materialLib.
 //
 // reflection and refraction share their figures: what both give must agree; a minImportance below
 // 1/4096 counts as 1/4096. Any pass may have
@@ -74,9 +88,27 @@ struct MeshFile {
   size_t line = 0;   // where the project names it
 };
 
+// A mesh that is loaded, but stands nowhere unless it is placed.
+struct ModelFile {
+  std::string name;
+  std::string path;
+  size_t line = 0;
+};
+
+// Objects of one element. Their materials are not known before the meshes are loaded.
+struct ObjectGroup {
+  std::string model, material;  // names; empty: none given
+  size_t line = 0;
+  std::vector<Object> objects;
+};
+
 struct Project {
   std::string file;
   std::vector<MeshFile> meshes;
+  std::vector<ModelFile> models;
+  std::vector<ObjectGroup> objects;
+  size_t object_count = 0;
+  std::vector<std::string> libraries;  // of materials, as they can be opened
   Scene scene;
   std::vector<Pipeline> pipelines;  // at least one
   size_t default_pipeline = 0;

@@ -1,4 +1,5 @@
 // The assets of a project: scenes, viewports, cameras, lights, material libraries.
+#include "io/project_objects.h"
 #include "io/project_reading.h"
 #include "io/text.h"
 
@@ -23,11 +24,17 @@ bool exists(const std::string& path) {
 void read_scene(Reading& reading, const XmlElement& element) {
   warn_unknown_attributes(reading.source, element, {"name", "type"});
   reading.scenes.push_back(attribute_or(element, "name", ""));
-  each(reading, element, "file", [&](const XmlElement& file) {
-    const std::string path = path_of(reading, file);
-    if (!exists(path)) fail(reading.source, file, path + ": no such file");
-    reading.project.meshes.push_back({path, file.line});
-  });
+  for (const XmlElement& child : element.children) {
+    if (same_name(child.name, "file")) {
+      const std::string path = path_of(reading, child);
+      if (!exists(path)) fail(reading.source, child, path + ": no such file");
+      if (reading.project.meshes.size() == kMostThings)
+        fail(reading.source, child, "more than " + std::to_string(kMostThings) + " of <file>");
+      reading.project.meshes.push_back({path, child.line});
+    } else if (!read_object_element(reading, child)) {
+      warn_unknown_child(reading.source, element, child);
+    }
+  }
 }
 
 void read_viewport(Reading& reading, const XmlElement& element) {
@@ -85,7 +92,11 @@ void read_light(Reading& reading, const XmlElement& element) {
 
 void read_material_library(Reading& reading, const XmlElement& element) {
   const std::string path = path_of(reading, element);
-  if (!exists(path)) warn(reading.source, element.line, path + ": no such file");
+  if (exists(path)) {
+    reading.project.libraries.push_back(path);
+  } else {
+    warn(reading.source, element.line, path + ": no such file");
+  }
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include "kernels/lanes.h"
 #include "kernels/meet.h"
 #include "kernels/sorter.h"
+#include "kernels/strata.h"
 #include "kernels/tables.h"
 #include "kernels/trace.h"
 #include "math/sampling.h"
@@ -315,6 +316,16 @@ void count_ambient(const KdView& tree, const PointPacket* const* points, int cou
 void ambient_blocks(const KdView& tree, const PointPacket* const* points, int count,
                     const AmbientSettings& settings, FreeRays* out) {
   trace_blocks(tree, points, count, settings, out, NoCounts{});
+}
+
+void stratum_rays(const PointPacket& points, const AmbientSettings& settings, int sample, RayPacket& rays) {
+  const int n = settings.strata;
+  Frames frames;
+  make_frames(points, frames);
+  begin_rays(points, settings, rays);
+  for (int g = 0; g < kPacketSize; g += kLanes)
+    store3(rays.dx, rays.dy, rays.dz, g, {Float(0.0f), Float(0.0f), Float(1.0f)});
+  make_directions(points, frames, settings, {sample, sample % n, sample / n, n}, points.live, rays);
 }
 
 void ambient_occlusion(const KdView& tree, const PointPacket& points, const AmbientSettings& settings,

@@ -1,6 +1,7 @@
 // The table of entry points that every instruction set exports, and what they take.
 #pragma once
 #include "kdtree/kdtree.h"
+#include "kdtree/objects.h"
 #include "kernels/footprint.h"
 #include "kernels/layout.h"
 #include "kernels/packet.h"
@@ -105,6 +106,20 @@ struct Kernels {
                         const WorkCounts& work);
   void (*count_ambient)(const KdView& tree, const PointPacket* const* points, int count,
                         const AmbientSettings& settings, FreeRays* out, const WorkCounts& work);
+
+  // Objects. The hits hold what the rays met so far and become the closest; the live rays that meet any
+  // object; how many of the ambient rays of each live point meet nothing opaque, neither in the tree nor of
+  // the objects. Each also as one that counts; it leaves rays_traced as it is.
+  void (*closest_objects)(const ObjectsView& view, const RayPacket& rays, HitPacket& hits);
+  uint64_t (*any_objects)(const ObjectsView& view, const RayPacket& rays, GlassRule glass);
+  void (*ambient_objects)(const KdView& tree, const ObjectsView& view, const PointPacket& points,
+                          const AmbientSettings& settings, FreeRays& free_rays);
+  void (*count_closest_objects)(const ObjectsView& view, const RayPacket& rays, HitPacket& hits,
+                                const WorkCounts& out);
+  uint64_t (*count_any_objects)(const ObjectsView& view, const RayPacket& rays, GlassRule glass,
+                                const WorkCounts& out);
+  void (*count_ambient_objects)(const KdView& tree, const ObjectsView& view, const PointPacket& points,
+                                const AmbientSettings& settings, FreeRays& free_rays, const WorkCounts& out);
 };
 
 // The table of every instruction set that was built.

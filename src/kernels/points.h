@@ -24,7 +24,8 @@ struct alignas(64) SurfacePacket {
   float t[kPacketSize];                                  // of the ray that came here
   uint32_t material[kPacketSize];
   uint32_t triangle[kPacketSize];
-  uint64_t back = 0;  // lanes that see the back of their triangle
+  float turning[kPacketSize];  // of points on objects: 1/radius, see curvature() in render/hit_triangles.h
+  uint64_t back = 0;           // lanes that see the back of their triangle
 };
 
 // A material's colour without its texture.

@@ -34,6 +34,12 @@ const Kernels kTable = {
     count_closest_blocks,
     count_shadows,
     count_ambient,
+    closest_objects,
+    any_objects,
+    ambient_objects,
+    count_closest_objects,
+    count_any_objects,
+    count_ambient_objects,
 };
 
 }  // namespace VITRAL_ISA

@@ -44,6 +44,16 @@ void write_full(const SurfaceView& scene, const Pinhole& camera, int x, int y, c
                 uint32_t wanted, FullBlock* out);
 void write_min(const SurfaceView& scene, const Pinhole& camera, int x, int y, const TileVisibility& tile,
                uint32_t wanted, MinBlock* out);
+void closest_objects(const ObjectsView& view, const RayPacket& rays, HitPacket& hits);
+uint64_t any_objects(const ObjectsView& view, const RayPacket& rays, GlassRule glass);
+void ambient_objects(const KdView& tree, const ObjectsView& view, const PointPacket& points,
+                     const AmbientSettings& settings, FreeRays& free_rays);
+void count_closest_objects(const ObjectsView& view, const RayPacket& rays, HitPacket& hits,
+                           const WorkCounts& out);
+uint64_t count_any_objects(const ObjectsView& view, const RayPacket& rays, GlassRule glass,
+                           const WorkCounts& out);
+void count_ambient_objects(const KdView& tree, const ObjectsView& view, const PointPacket& points,
+                           const AmbientSettings& settings, FreeRays& free_rays, const WorkCounts& out);
 
 }  // namespace VITRAL_ISA
 }  // namespace vitral

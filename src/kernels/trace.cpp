@@ -256,6 +256,10 @@ void count_closest(const KdView& tree, const RayPacket& rays, HitPacket& hits, c
   trace<Query::closest>(tree, rays, 0, GlassRule::blocks, &hits, Counting{out.totals, out.work});
 }
 
+uint64_t improve_closest(const KdView& tree, const RayPacket& rays, HitPacket& hits, Counting counts) {
+  return trace<Query::closest>(tree, rays, 0, GlassRule::blocks, &hits, counts);
+}
+
 uint64_t trace_any_from(const KdView& tree, uint32_t node, const RayPacket& rays, GlassRule glass,
                         Counting counts) {
   return trace<Query::any>(tree, rays, node, glass, nullptr, counts);
@@ -266,6 +270,10 @@ uint64_t trace_any_from(const KdView& tree, uint32_t node, const RayPacket& rays
 void trace_closest(const KdView& tree, const RayPacket& rays, HitPacket& hits) {
   clear(hits);
   trace<Query::closest>(tree, rays, 0, GlassRule::blocks, &hits, NoCounts{});
+}
+
+uint64_t improve_closest(const KdView& tree, const RayPacket& rays, HitPacket& hits, NoCounts counts) {
+  return trace<Query::closest>(tree, rays, 0, GlassRule::blocks, &hits, counts);
 }
 
 uint64_t trace_any(const KdView& tree, const RayPacket& rays, GlassRule glass) {

@@ -47,14 +47,29 @@ Affine operator*(const Affine& a, const Affine& b) {
           to_float(apply(a, to_double(b.z))), to_float(apply(a, to_double(b.origin)) + to_double(a.origin))};
 }
 
-Affine inverse(const Affine& a) {
-  const Vec3d x = to_double(a.x), y = to_double(a.y), z = to_double(a.z), o = to_double(a.origin);
-  const Vec3d yz = cross(y, z), zx = cross(z, x), xy = cross(x, y);
-  const double over = 1 / dot(x, yz);
+PreciseAffine to_double(const Affine& a) {
+  return {to_double(a.x), to_double(a.y), to_double(a.z), to_double(a.origin)};
+}
+
+double determinant(const Affine& a) {
+  return dot(to_double(a.x), cross(to_double(a.y), to_double(a.z)));
+}
+
+PreciseAffine precise_inverse(const Affine& a) {
+  const PreciseAffine d = to_double(a);
+  const Vec3d yz = cross(d.y, d.z), zx = cross(d.z, d.x), xy = cross(d.x, d.y);
+  const double over = 1 / dot(d.x, yz);
   // The rows of the inverse are the columns' cross products over the determinant.
   const Vec3d rx = yz * over, ry = zx * over, rz = xy * over;
-  return {to_float(Vec3d{rx.x, ry.x, rz.x}), to_float(Vec3d{rx.y, ry.y, rz.y}),
-          to_float(Vec3d{rx.z, ry.z, rz.z}), to_float(Vec3d{-dot(rx, o), -dot(ry, o), -dot(rz, o)})};
+  return {{rx.x, ry.x, rz.x},
+          {rx.y, ry.y, rz.y},
+          {rx.z, ry.z, rz.z},
+          {-dot(rx, d.origin), -dot(ry, d.origin), -dot(rz, d.origin)}};
+}
+
+Affine inverse(const Affine& a) {
+  const PreciseAffine i = precise_inverse(a);
+  return {to_float(i.x), to_float(i.y), to_float(i.z), to_float(i.origin)};
 }
 
 bool is_finite(const Affine& a) {

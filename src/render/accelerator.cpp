@@ -56,16 +56,8 @@ Vec2 texcoord_at(const Mesh& mesh, uint32_t triangle, float u, float v) {
   return {at_barycentrics(c[0].x, c[1].x, c[2].x, u, v), at_barycentrics(c[0].y, c[1].y, c[2].y, u, v)};
 }
 
-void gather_triangles(const Scene& scene, ThreadPool& pool, Accelerator& accelerator) {
-  std::vector<KdTriangle>& triangles = accelerator.triangles;
-  const Mesh& mesh = scene.mesh;
-  std::vector<uint32_t> flags(scene.materials.size());
-  for (size_t m = 0; m < flags.size(); ++m) {
-    flags[m] = (is_glass(scene.materials[m]) ? kGlassTriangle : 0u) |
-               (scene.materials[m].opacity_map != kNoTexture ? kCutOutTriangle : 0u);
-  }
-  accelerator.has_cut_outs =
-      std::any_of(flags.begin(), flags.end(), [](uint32_t f) { return (f & kCutOutTriangle) != 0; });
+void gather_mesh(const Mesh& mesh, const std::vector<uint32_t>& flags, uint32_t material, ThreadPool& pool,
+                 std::vector<KdTriangle>& triangles) {
   triangles.resize(mesh.triangles.size());
   constexpr size_t kChunk = 16384;
   pool.parallel_for((triangles.size() + kChunk - 1) / kChunk, [&](size_t chunk, size_t) {
@@ -77,9 +69,18 @@ void gather_triangles(const Scene& scene, ThreadPool& pool, Accelerator& acceler
         triangles[i].corner[k][1] = p.y;
         triangles[i].corner[k][2] = p.z;
       }
-      triangles[i].flags = flags[mesh.triangle_material[i]];
+      triangles[i].flags = flags[material != kNoIndex ? material : mesh.triangle_material[i]];
     }
   });
+}
+
+void gather_triangles(const Scene& scene, ThreadPool& pool, Accelerator& accelerator) {
+  const std::vector<uint32_t> flags = triangle_flags(scene);
+  accelerator.has_cut_outs =
+      std::any_of(flags.begin(), flags.end(), [](uint32_t f) { return (f & kCutOutTriangle) != 0; });
+  gather_mesh(scene.mesh, flags, kNoIndex, pool, accelerator.triangles);
+  gather_models(scene, pool, accelerator);
+  place_objects(scene, 0, accelerator);
   set_views(scene, accelerator);
 }
 
@@ -102,7 +103,8 @@ void build_accelerator(const Scene& scene, ThreadPool& pool, const Control& cont
   };
   a.all = build_kdtree(a.triangles, all, settings, executor, progress);
   a.glass = build_kdtree(a.triangles, glass, settings, executor);
-  a.has_glass = !glass.empty();
+  a.has_glass |= !glass.empty();
+  build_models(executor, a);
   set_views(scene, a);
 }
 

@@ -6,6 +6,7 @@
 #include "math/fresnel.h"
 #include "math/random.h"
 #include "render/frame.h"
+#include "render/hit_triangles.h"
 
 namespace vitral {
 namespace {
@@ -50,20 +51,15 @@ Split split_light(const Material& m, const Settings& settings, float cos_i, Side
   return s;
 }
 
-// How fast the shading normal turns along the surface, 1/radius: half the divergence of the corners' normals
-// over the triangle; greater than 0 where the side that is seen bulges out.
-float curvature(const Mesh& mesh, uint32_t triangle, const Vec3& geometric, const Vec3& shading) {
+// As curvature() has it, of a triangle of the scene's own mesh.
+float mesh_curvature(const Mesh& mesh, uint32_t triangle, const Vec3& geometric, const Vec3& shading) {
   if (mesh.triangle_normals.empty()) return 0;
   const Corners& at = mesh.triangle_normals[triangle];
   if (at[0] == kNoIndex || at[1] == kNoIndex || at[2] == kNoIndex) return 0;
-  const Vec3 &a = mesh.normals[at[0]], &b = mesh.normals[at[1]], &c = mesh.normals[at[2]];
   const Corners& corner = mesh.triangles[triangle];
-  const Vec3& from = mesh.positions[corner[0]];
-  const BarycentricSlopes<float> slopes =
-      barycentric_slopes(mesh.positions[corner[1]] - from, mesh.positions[corner[2]] - from, geometric);
-  const float half = 0.5f * (dot(slopes.b, b - a) + dot(slopes.c, c - a));
-  if (!(absolute(half) < 1e9f)) return 0;
-  return dot((a + b) + c, shading) < 0 ? -half : half;
+  const Vec3 normals[3] = {mesh.normals[at[0]], mesh.normals[at[1]], mesh.normals[at[2]]};
+  const Vec3 corners[3] = {mesh.positions[corner[0]], mesh.positions[corner[1]], mesh.positions[corner[2]]};
+  return curvature(corners, normals, geometric, shading);
 }
 
 // What the turning of the normal across the cone's section adds to the spread, besides Snell's part: the
@@ -101,7 +97,9 @@ void spawn_at(const FrameContext& frame, const SurfacePacket& s, int lane, const
   if (!(dot(n, incoming) < -1e-4f)) n = geometric;
   const float cos_i = least(greatest(-dot(n, incoming), 0.0f), 1.0f);
   const Cone here{diameter_at(parent.cone, length(position - parent.origin)), parent.cone.spread};
-  const float turning = curvature(frame.scene.mesh, s.triangle[lane], geometric, n);
+  const float turning = is_object(frame.accelerator.placed.view, s.triangle[lane])
+                            ? s.turning[lane]
+                            : mesh_curvature(frame.scene.mesh, s.triangle[lane], geometric, n);
   const Split split = split_light(m, frame.settings, cos_i, s.back >> lane & 1 ? Side::back : Side::front);
 
   if (luminance(parent.weight * split.reflected) >= frame.least_importance) {

@@ -229,7 +229,7 @@ void simplify(Scene& scene, Camera& camera) {
   for (Material& m : scene.materials) m.optics = Optics::opaque;
   scene.mesh.triangle_normals.clear();
   std::erase_if(scene.lights, [](const Light& light) { return light.kind != Light::Kind::directional; });
-  const float diagonal = length(extent(bounds(scene.mesh)));
+  const float diagonal = length(extent(bounds(scene)));
   camera.near = 1e-6f * diagonal;
   camera.far = 1e6f * diagonal;
 }
@@ -266,7 +266,7 @@ Measurement measure_passes(const Scene& scene, const Camera& camera, const Setti
 
   FrameContext frame = make_context(scene, accelerator, camera, settings);
   if (rules == RayRules::anchor) {
-    frame.offset.fixed = 1e-4f * length(extent(bounds(scene.mesh)));
+    frame.offset.fixed = 1e-4f * length(extent(bounds(scene)));
     frame.sample_step = 1;
   }
   out.isa = frame.kernels.isa;

@@ -34,10 +34,16 @@ void collect_stats(const FrameContext& frame, const std::vector<Worker>& workers
   stats.isa = frame.kernels.isa;
   stats.counted = frame.count != Count::nothing;
   stats.threads = static_cast<int>(workers.size());
-  stats.triangles = frame.scene.mesh.triangles.size();
+  const PlacedObjects& placed = frame.accelerator.placed;
+  stats.triangles = placed.view.end_number;  // those of instances, too; and shapes
   stats.dropped_triangles = frame.scene.dropped_triangles;
   stats.tree_nodes = tree.nodes.size();
-  stats.tree_bytes = tree_bytes(tree);
+  stats.tree_bytes = tree_bytes(tree) + placed.tree.nodes.size() * sizeof(ObjectNode);
+  stats.tree_nodes += placed.tree.nodes.size();
+  for (const KdTree& model : placed.trees) {
+    stats.tree_nodes += model.nodes.size();
+    stats.tree_bytes += tree_bytes(model);
+  }
   for (size_t p = 0; p < kPasses; ++p) {
     PassStats total{kPassNames[p], 0, 0, {}};
     for (const Worker& w : workers) {
@@ -68,7 +74,8 @@ void render_sample(FrameContext& frame, ThreadPool& pool, Control& control, std:
   const Settings& settings = frame.settings;
   const Rectangle crop = crop_of(settings);
   RasterView raster_view{};
-  if (settings.primary == Primary::raster) {
+  // The rasterizer draws the mesh alone.
+  if (settings.primary == Primary::raster && frame.accelerator.placed.view.count == 0) {
     const PassTimer timer(workers[0].tally, Pass::raster);
     SetupTimes times;
     raster_view = setup_raster(frame, crop, pool, control, raster, times);
@@ -151,7 +158,8 @@ FrameContext make_context(const Scene& scene, const Accelerator& accelerator, co
 // Without rays there is nothing to trace.
 static bool needs_tree(const Scene& scene, const Settings& settings) {
   const Effects& on = settings.effects;
-  if (settings.primary == Primary::trace || on.shadows || on.ambient_occlusion) return true;
+  if (settings.primary == Primary::trace || on.shadows || on.ambient_occlusion || !scene.objects.empty())
+    return true;
   const bool bends = std::any_of(scene.materials.begin(), scene.materials.end(),
                                  [](const Material& m) { return m.optics != Optics::opaque; });
   return bends && (on.reflection || on.refraction);

@@ -4,15 +4,29 @@
 namespace vitral {
 namespace {
 
+Hit nearest_glass(const FrameContext& frame, const Ray& ray, TraversalCounts& counts) {
+  const KdView& tree = frame.accelerator.glass_view;
+  const ObjectsView& objects = frame.accelerator.placed.view;
+  const bool counted = frame.count != Count::nothing;
+  Hit hit = counted ? walk_closest(tree, ray, counts) : walk_closest(tree, ray);
+  if (objects.count == 0) return hit;
+  if (counted) {
+    walk_objects(objects, ray, Seen::glass_only, hit, counts);
+  } else {
+    walk_objects(objects, ray, Seen::glass_only, hit);
+  }
+  return hit;
+}
+
 // What is left of the light behind all sheets of glass on the ray, nearest first. Sheets at the very
 // same t, as at the edge that two triangles of a sheet share, count once.
 Vec3 glass_tint(const FrameContext& frame, Ray ray, TraversalCounts& counts) {
   Vec3 tint{1, 1, 1};
   for (;;) {
-    const KdView& tree = frame.accelerator.glass_view;
-    const Hit hit = frame.count == Count::nothing ? walk_closest(tree, ray) : walk_closest(tree, ray, counts);
+    const Hit hit = nearest_glass(frame, ray, counts);
     if (hit.triangle == kNoTriangle) return tint;
-    const Material& m = frame.scene.materials[frame.scene.mesh.triangle_material[hit.triangle]];
+    const Material& m =
+        frame.scene.materials[material_of(frame.scene, frame.accelerator.placed, hit.triangle)];
     tint *= m.optics == Optics::dissolve ? Vec3{1, 1, 1} * (1 - m.opacity) : m.transmission;
     if (!(luminance(tint) > 0)) return {0, 0, 0};
     ray.tmin = hit.t;

@@ -123,7 +123,7 @@ float sample_alpha(const Texture& texture, Vec2 uv) {
 }
 
 void apply_textures(const FrameContext& frame, const HitPacket& hits, const RayWidths& widths,
-                    SurfacePacket& s) {
+                    SurfacePacket& s, const HitTriangles* triangles) {
   const Scene& scene = frame.scene;
   if (frame.accelerator.mip_maps.empty()) return;
   TexturedLanes lanes;
@@ -136,13 +136,14 @@ void apply_textures(const FrameContext& frame, const HitPacket& hits, const RayW
     const Texture& texture = scene.textures[static_cast<size_t>(map)];
     lanes.columns[lane] = static_cast<float>(texture.width);
     lanes.rows[lane] = static_cast<float>(texture.height);
-    const CornerTexcoords corners = corner_texcoords(scene.mesh, s.triangle[lane]);
+    const CornerTexcoords corners =
+        triangles ? triangles->texcoords[lane] : corner_texcoords(scene.mesh, s.triangle[lane]);
     for (size_t k = 0; k < 3; ++k) lanes.u[k][lane] = corners[k].x, lanes.v[k][lane] = corners[k].y;
   }
   if (textured == 0) return;
   Footprints f;
-  frame.kernels.texture_footprints(frame.accelerator.triangles.data(), hits, s.points, widths, lanes,
-                                   textured, f);
+  const KdTriangle* const own = triangles ? triangles->triangles : frame.accelerator.triangles.data();
+  frame.kernels.texture_footprints(own, hits, s.points, widths, lanes, textured, f);
   for (uint64_t left = textured; left != 0; left &= left - 1) {
     const int lane = __builtin_ctzll(left);
     const auto map = static_cast<size_t>(scene.materials[s.material[lane]].diffuse_map);

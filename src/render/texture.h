@@ -2,6 +2,7 @@
 #pragma once
 #include "kernels/footprint.h"
 #include "kernels/points.h"
+#include "render/hit_triangles.h"
 #include "render/mip_map.h"
 #include "render/surface.h"
 #include "vitral/scene.h"
@@ -22,8 +23,8 @@ Vec3 sample_color(const MipMap& map, const Vec2& center, const Vec2& step, float
 float sample_alpha(const Texture& texture, Vec2 uv);
 
 // Multiplies the albedo of the live lanes whose materials have a texture by what the rays see of it. Does
-// nothing where no mip maps were made.
+// nothing where no mip maps were made. The hits and surfaces are on these triangles, or on the scene's mesh.
 void apply_textures(const FrameContext& frame, const HitPacket& hits, const RayWidths& widths,
-                    SurfacePacket& surfaces);
+                    SurfacePacket& surfaces, const HitTriangles* triangles);
 
 }  // namespace vitral

@@ -1,0 +1,3 @@
+// The text of objects.cpp with counts. A file of its own, as for trace.cpp.
+#define VITRAL_COUNTED
+#include "kernels/objects.cpp"
