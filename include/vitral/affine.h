@@ -82,7 +82,7 @@ Quaternion quaternion(const Vec3& axis, float degrees);
 Quaternion quaternion_of_frame(const Vec3& x, const Vec3& y, const Vec3& z);
 Vec3 rotate(const Quaternion& q, const Vec3& v);
 
-// Where a rigid body is at a moment: rotated about the origin of what moves, then displaced.
+// Where a rigid body is at a moment: turned about its own origin, then displaced.
 struct RigidKey {
   float time = 0;
   Vec3 translation{0, 0, 0};

@@ -143,7 +143,7 @@ struct Object {
   uint32_t model = 0;            // into Scene::models (mesh)
   uint32_t material = kNoIndex;  // into Scene::materials; kNoIndex: the mesh's own
   Affine placement;              // from its own space to the world
-  std::vector<RigidKey> motion;  // goes after the placement; empty: it rests
+  std::vector<RigidKey> motion;  // goes after the placement, about where it puts the origin; empty: it rests
 };
 
 struct Scene {

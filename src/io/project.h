@@ -43,7 +43,8 @@
 // TRANSFORMS are any number of <translate VECTOR/>, <rotate axis="0 1 0" degrees="30"/>, <scale VECTOR/> or
 // <scale>2</scale> and <matrix>, three rows of four numbers, each applied after the ones before it, about the
 // origin of the world. Besides, <motion> holds in order of time <key time="0">: <translate/> and <rotate/>,
-// which go after them; between keys what moves is displaced and turned evenly. The materials of objects have
+// which go after them, the rotation about where they put the object's origin; between keys what moves is
+// displaced and turned evenly. The materials of objects have
 // their names from the meshes' own libraries or from a materialLib.
 //
 // reflection and refraction share their figures: what both give must agree; a minImportance below

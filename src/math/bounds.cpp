@@ -38,7 +38,12 @@ Box placed_bounds(Shape shape, const Box& own, const Affine& placement) {
 
 Affine placement_at(const Object& object, float time) {
   if (object.motion.empty()) return object.placement;
-  return affine_of(pose_at(object.motion, time)) * object.placement;
+  const RigidKey pose = pose_at(object.motion, time);
+  Affine turned = object.placement;
+  turned.origin = {0, 0, 0};
+  turned = affine_of({pose.time, {0, 0, 0}, pose.rotation}) * turned;
+  turned.origin = object.placement.origin + pose.translation;
+  return turned;
 }
 
 Box bounds(const Scene& scene) {

@@ -64,6 +64,9 @@ struct Accelerator {
 void build_accelerator(const Scene& scene, ThreadPool& pool, const Control& control,
                        Accelerator& accelerator);
 
+// Whether any object is at different places at different times.
+bool moves(const Scene& scene);
+
 // Puts the objects where they are at a time, once their models are there. May be called again for another
 // time: what does not move costs as much as what does, but nothing is built but the tree over the objects.
 // Throws UsageError when hits would need more than 2^32 - 2 numbers.

@@ -4,6 +4,7 @@
 #include "render/gbuffer.h"
 #include "render/measure_picture.h"
 #include "render/render.h"
+#include "render/samples.h"
 #include "vitral/box.h"
 
 namespace vitral {
@@ -263,6 +264,7 @@ Measurement measure_passes(const Scene& scene, const Camera& camera, const Setti
   build.bytes = tree_bytes(accelerator.all) + tree_bytes(accelerator.glass);
   out.passes.push_back(build);
   accelerator.mip_maps = make_mip_maps(scene, pool);
+  if (moves(scene)) place_objects(scene, middle_of_shutter(camera), accelerator);
 
   FrameContext frame = make_context(scene, accelerator, camera, settings);
   if (rules == RayRules::anchor) {

@@ -18,8 +18,8 @@ double tracing_seconds(const Stats& stats, Primary primary) {
   return seconds;
 }
 
-FrameTimes measure_frame(const Scene& scene, const Accelerator& accelerator, const FrameJob& job,
-                         ThreadPool& pool, const Runs& runs, Control& control) {
+FrameTimes measure_frame(const Scene& scene, Accelerator& accelerator, const FrameJob& job, ThreadPool& pool,
+                         const Runs& runs, Control& control) {
   FrameTimes out;
   double tracing = 0, whole = 0;
   out.ms = time_runs(runs, job.name.c_str(), [&] {

@@ -133,6 +133,11 @@ void build_models(const Executor& executor, Accelerator& a) {
   for (size_t i = 0; i < p.models.size(); ++i) p.views[i] = view_of(p, *p.models[i]);
 }
 
+bool moves(const Scene& scene) {
+  return std::any_of(scene.objects.begin(), scene.objects.end(),
+                     [](const Object& object) { return object.motion.size() > 1; });
+}
+
 void place_objects(const Scene& scene, float time, Accelerator& a) {
   PlacedObjects& p = a.placed;
   const std::vector<uint32_t> flags = triangle_flags(scene);

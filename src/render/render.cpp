@@ -100,7 +100,7 @@ void render_sample(FrameContext& frame, ThreadPool& pool, Control& control, std:
 
 }  // namespace
 
-Frame render_frame(const Scene& scene, const Accelerator& accelerator, const Camera& camera,
+Frame render_frame(const Scene& scene, Accelerator& accelerator, const Camera& camera,
                    const Settings& settings, ThreadPool& pool, Control& control) {
   check_settings(settings);
   check_camera(camera);
@@ -117,7 +117,9 @@ Frame render_frame(const Scene& scene, const Accelerator& accelerator, const Cam
   std::vector<Worker> workers(pool.workers());
   RasterFrame raster;
   ProgressSum progress;
+  const bool moving = moves(scene);
   for (const PixelSample& sample : pixel_samples(settings, camera)) {
+    if (moving) place_objects(scene, sample.time, accelerator);
     const SampleView view = sample_view(camera_at(camera, sample.time), settings, sample);
     frame.camera = view.pinhole, frame.lens = view.lens;
     frame.weight = sample.weight;

@@ -9,7 +9,8 @@ namespace vitral {
 void check_settings(const Settings& settings);
 void check_camera(const Camera& camera);
 
-Frame render_frame(const Scene& scene, const Accelerator& accelerator, const Camera& camera,
+// Objects that move are placed anew for every sample.
+Frame render_frame(const Scene& scene, Accelerator& accelerator, const Camera& camera,
                    const Settings& settings, ThreadPool& pool, Control& control);
 
 }  // namespace vitral

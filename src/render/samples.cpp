@@ -97,7 +97,7 @@ RigidKey pose_of(const CameraKey& key) {
 std::vector<PixelSample> pixel_samples(const Settings& settings, const Camera& camera) {
   if (settings.samples == 1) {
     PixelSample middle;
-    middle.time = 0.5f * camera.shutter_open + 0.5f * camera.shutter_close;
+    middle.time = middle_of_shutter(camera);
     return {middle};
   }
   const auto n = static_cast<uint32_t>(settings.samples);
@@ -123,6 +123,10 @@ std::vector<uint32_t> random_order(uint32_t count, uint32_t key) {
     order[j] = i;
   }
   return order;
+}
+
+float middle_of_shutter(const Camera& camera) {
+  return 0.5f * camera.shutter_open + 0.5f * camera.shutter_close;
 }
 
 Camera camera_at(const Camera& camera, float time) {

@@ -32,6 +32,8 @@ std::vector<PixelSample> pixel_samples(const Settings& settings, const Camera& c
 // 0..count-1 in an order that the key decides, every one equally likely (Fisher and Yates).
 std::vector<uint32_t> random_order(uint32_t count, uint32_t key);
 
+float middle_of_shutter(const Camera& camera);
+
 // The camera's position, view and up at a moment: between keys the position moves in a straight line, the
 // directions turn together.
 Camera camera_at(const Camera& camera, float time);
