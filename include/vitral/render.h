@@ -45,6 +45,7 @@ struct Settings {
   int samples = 1;  // per pixel, 1..kMostPixelSamples; one: the middle of pixel, lens and shutter
   Filter filter = Filter::box;
   Effects effects;
+  int light_samples = 0;          // of lights with a size, 1..kMostLightSamples; 0: each light's own figure
   int ao_samples = 16;            // a square number, 1..1024
   float ao_distance = 0.5f;       // > 0
   float ao_exponent = 1;          // > 0

@@ -25,7 +25,21 @@ const char* name_of(Optics optics) {
 }
 
 const char* name_of(Light::Kind kind) {
-  return kind == Light::Kind::directional ? "directional" : "point";
+  switch (kind) {
+    case Light::Kind::directional:
+      return "directional";
+    case Light::Kind::point:
+      return "point";
+    case Light::Kind::spot:
+      return "spot";
+    case Light::Kind::rectangle:
+      return "rectangle";
+    case Light::Kind::sphere:
+      return "sphere";
+    case Light::Kind::sun:
+      return "sun";
+  }
+  return "";
 }
 
 std::string effects_of(const Effects& effects) {

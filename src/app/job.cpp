@@ -61,6 +61,7 @@ void override_settings(const Options& options, Settings& settings) {
   override_with(options.samples, settings.samples);
   override_with(options.filter, settings.filter);
   override_with(options.effects, settings.effects);
+  override_with(options.light_samples, settings.light_samples);
   override_with(options.ao_samples, settings.ao_samples);
   override_with(options.ao_distance, settings.ao_distance);
   override_with(options.ao_exponent, settings.ao_exponent);
@@ -176,10 +177,11 @@ void find_view(Job& job, const Options& options) {
   if (!options.ao_distance) settings.ao_distance = auto_ao_distance(core(mesh));
 }
 
-// The first directional light takes the direction; a project without one gets a white sun.
+// The first directional light or sun takes the direction; a project without one gets a white sun.
 void turn_sun(const Vec3& direction, Scene& scene) {
-  const auto found = std::find_if(scene.lights.begin(), scene.lights.end(),
-                                  [](const Light& light) { return light.kind == Light::Kind::directional; });
+  const auto found = std::find_if(scene.lights.begin(), scene.lights.end(), [](const Light& light) {
+    return light.kind == Light::Kind::directional || light.kind == Light::Kind::sun;
+  });
   Light& sun = found != scene.lights.end() ? *found : scene.lights.emplace_back();
   sun.direction = normalize(direction);
 }

@@ -219,6 +219,9 @@ constexpr OptionRow kTable[] = {
      "out of shadows,reflection,refraction,ao; or none; or all (the\n"
      "project's; all for a mesh)",
      [](O& o, const R& r, const S& v) { o.effects = effects(r, v); }},
+    {kLight, "--light-samples", "", "N", kFrame,
+     "shadow rays from a point to every light with a size, 1 to 1024 (the\nproject's; each light's)",
+     [](O& o, const R& r, const S& v) { o.light_samples = integer(r, v, 1, kMostLightSamples); }},
     {kLight, "--ao-samples", "", "N", kFrame, "ambient rays a point: a square number up to 1024 (16)",
      [](O& o, const R& r, const S& v) { o.ao_samples = samples(r, v); }},
     {kLight, "--ao-distance", "", "D", kFrame, "how far they reach (0.5; a mesh: 8 % of its diagonal)",

@@ -40,7 +40,7 @@ struct Options {
   std::optional<Filter> filter;
 
   std::optional<Effects> effects;
-  std::optional<int> ao_samples, max_depth, threads;
+  std::optional<int> light_samples, ao_samples, max_depth, threads;
   std::optional<float> ao_distance, ao_exponent, min_importance;
   std::optional<Fresnel> fresnel;
   std::optional<Isa> isa;

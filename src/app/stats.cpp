@@ -16,6 +16,7 @@ void add_settings(JsonWriter& json, const Settings& settings) {
       .add("refraction", settings.effects.refraction)
       .add("ao", settings.effects.ambient_occlusion)
       .end_object()
+      .add("light_samples", settings.light_samples)
       .add("ao_samples", settings.ao_samples)
       .add("ao_distance", settings.ao_distance)
       .add("ao_exponent", settings.ao_exponent)

@@ -133,6 +133,15 @@ Vec3 color_of(const Source& source, const XmlElement& element, Range range) {
            in_words(range));
 }
 
+float number_of(const Source& source, const XmlElement& element, Range range) {
+  warn_unknown_attributes(source, element, {"value"});
+  const std::string* value = find_attribute(element, "value");
+  const std::string& text = value ? *value : element.text;
+  if (const std::optional<float> number = parse_number(text, range)) return *number;
+  fail(source, element,
+       "<" + printable(element.name) + "> is '" + printable(text) + "', not a number " + in_words(range));
+}
+
 std::string name_of(const Source& source, const XmlElement& element) {
   warn_unknown_attributes(source, element, {"name", "file", "filename", "path", "value"});
   for (const std::string_view attribute : {"name", "file", "filename", "path", "value"}) {

@@ -40,6 +40,8 @@ bool flag_attribute(const Source&, const XmlElement&, std::string_view name);  /
 Vec3 vector_of(const Source&, const XmlElement&, Range range);
 Vec3 color_of(const Source&, const XmlElement&, Range range);
 
+float number_of(const Source&, const XmlElement&, Range range);  // the attribute `value`, or the text
+
 // What an element names: its attribute `name`, `file`, `filename`, `path` or `value`, or its text.
 std::string name_of(const Source&, const XmlElement&);
 

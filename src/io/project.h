@@ -24,9 +24,16 @@
 //         <shutter open="0" close="0.5"/>      times; the picture is the mean of what is seen between them
 //         <motion><key time="0"> <position/> <view/> <up/>   where it is at some times, in their order; what
 //                                              a key leaves out is as in the key before
-//       <lights><light name="..." type="directional|point">
-//         <direction VECTOR/> <position VECTOR/>   with a direction the light is directional, with a
-//         <color COLOR/> <ambient COLOR/>          position only it is a point; ambient adds to the scene
+//       <lights><light name="..." type="directional|point|spot|rectangle|sphere|sun" samples="16">
+//         <direction VECTOR/> <position VECTOR/>   without a type: with a direction the light is
+//         <color COLOR/> <ambient COLOR/>          directional, with a position only it is a point;
+//                                                  ambient adds to the scene
+//         <cone inner="30" outer="40"/>            spot: degrees from its direction, 0..180; between them
+//                                                  the intensity fades, outside of both it is 0
+//         <size width="1" height="1"/>             rectangle: it shines to the side of its direction; width
+//         <side VECTOR/>                           runs along the side, or else horizontally
+//         <radius>0.5</radius>                     sphere
+//         <diameter>0.53</diameter>                sun: the disk, in degrees from edge to edge
 //       <materialLibs><mlib name="a.mtl"/>         must exist; an OBJ loads its own by itself
 //     <pipelines>
 //       <pipeline name="..." default="true" defaultCamera="...">   one or more
@@ -34,7 +41,7 @@
 //               samples="1" filter="box|tent|mitchell"/>   per pixel, 1..65536: over the pixel, lens and
 //               shutter
 //         <pass class="trace" name="...">          (other name: optix); empty: a pass-through
-//           <shadows/>
+//           <shadows samples="16"/>                for all lights with a size; or else their own
 //           <reflection maxDepth="5" minImportance="0.005" fresnel="exact|schlick|report"/>
 //           <refraction maxDepth="5" minImportance="0.005" fresnel="exact|schlick|report"/>
 //           <ambientOcclusion samples="16" distance="0.5" exponent="1"/>   samples: a square number
@@ -46,6 +53,9 @@
 // which go after them, the rotation about where they put the object's origin; between keys what moves is
 // displaced and turned evenly. The materials of objects have
 // their names from the meshes' own libraries or from a materialLib.
+// Rectangle, sphere and sun cast soft shadows: a point sends `samples` rays to each, 1..1024. They are not
+// seen themselves; a surface that shows one may stand where it is. The color is the irradiance at normal
+// incidence, of lights with a position at distance 1: what a point light there would have.
 //
 // reflection and refraction share their figures: what both give must agree; a minImportance below
 // 1/4096 counts as 1/4096. Any pass may have

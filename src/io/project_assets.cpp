@@ -49,47 +49,6 @@ void read_viewport(Reading& reading, const XmlElement& element) {
   }
 }
 
-// Directional or point, as its type says or, without a type, as what it has: direction or position.
-Light::Kind kind_of(const Source& source, const XmlElement& element, bool has_direction, bool has_position) {
-  const std::string type = attribute_or(element, "type", has_direction ? "directional" : "point");
-  const bool directional = same_name(type, "directional");
-  if (!directional && !same_name(type, "point")) {
-    fail(source, element, "type=\"" + printable(type) + "\" is neither directional nor point");
-  }
-  if (directional && !has_direction) fail(source, element, "this light has no direction");
-  if (!directional && !has_position) fail(source, element, "this light has neither direction nor position");
-  return directional ? Light::Kind::directional : Light::Kind::point;
-}
-
-void read_light(Reading& reading, const XmlElement& element) {
-  const Source& source = reading.source;
-  warn_unknown_attributes(source, element, {"name", "type"});
-  reading.lights.push_back(attribute_or(element, "name", ""));
-  Light light;
-  bool has_direction = false, has_position = false;
-  for (const XmlElement& child : element.children) {
-    if (same_name(child.name, "direction")) {
-      const Vec3 direction = vector_of(source, child, kCoordinates);
-      if (!(length(direction) > 0)) fail(source, child, "the direction is zero");
-      light.direction = normalize(direction);
-      has_direction = true;
-    } else if (same_name(child.name, "position")) {
-      light.position = vector_of(source, child, kCoordinates);
-      has_position = true;
-    } else if (same_name(child.name, "color")) {
-      light.color = color_of(source, child, kRadiances);
-    } else if (same_name(child.name, "ambient")) {
-      if (!reading.has_ambient) reading.project.scene.ambient = {0, 0, 0};
-      reading.has_ambient = true;
-      reading.project.scene.ambient += color_of(source, child, kRadiances);
-    } else {
-      warn_unknown_child(source, element, child);
-    }
-  }
-  light.kind = kind_of(source, element, has_direction, has_position);
-  reading.project.scene.lights.push_back(light);
-}
-
 void read_material_library(Reading& reading, const XmlElement& element) {
   const std::string path = path_of(reading, element);
   if (exists(path)) {

@@ -88,7 +88,9 @@ void read_sampling(const Source& source, const XmlElement& pass, Settings& setti
 bool read_effect(const Source& source, const XmlElement& element, Settings& settings, Figures& figures) {
   Effects& effects = settings.effects;
   if (same_name(element.name, "shadows")) {
-    warn_unknown_attributes(source, element, {});
+    warn_unknown_attributes(source, element, {"samples"});
+    settings.light_samples = static_cast<int>(
+        integer_attribute(source, element, "samples", 1, kMostLightSamples, settings.light_samples));
     effects.shadows = true;
   } else if (same_name(element.name, "reflection")) {
     read_paths(source, element, figures);

@@ -1,4 +1,4 @@
-// What the two halves of the project reader share: project_assets.cpp and project_pipelines.cpp.
+// What the parts of the project reader share: project_assets.cpp, project_lights.cpp, project_pipelines.cpp.
 #pragma once
 #include "io/element.h"
 #include "io/project.h"
@@ -21,6 +21,7 @@ struct Reading {
 
 void read_camera(Reading& reading, const XmlElement& element);
 void read_assets(Reading& reading, const XmlElement& assets);
+void read_light(Reading& reading, const XmlElement& element);
 
 // The assets have been read: pipelines refer to them by name. `defaults` is what a pipeline starts from.
 void read_pipelines(const Reading& reading, const XmlElement& pipelines, const Settings& defaults);

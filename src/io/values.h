@@ -16,6 +16,8 @@ struct Range {
 inline constexpr Range kCoordinates{-1e9f, 1e9f};
 inline constexpr Range kDistances{1e-9f, 1e9f};
 inline constexpr Range kFovDegrees{0.01f, 179};
+inline constexpr Range kConeDegrees{0, 180};       // from the axis
+inline constexpr Range kDiskDegrees{0.001f, 180};  // from edge to edge
 inline constexpr Range kExponents{0.01f, 100};
 inline constexpr Range kImportances{0, 1};
 inline constexpr Range kIndices{1, 10};

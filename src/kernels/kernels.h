@@ -14,6 +14,8 @@
 
 namespace vitral {
 
+struct LightShape;  // math/light.h
+
 struct Kernels {
   const char* isa;
   int lanes;
@@ -61,6 +63,11 @@ struct Kernels {
   void (*trace_shadows)(const KdView& tree, const Light& light, GlassRule glass,
                         const PointPacket* const* points, int count, ShadowAnswer* out);
 
+  // Sample `k` of a light with a size for every live point, and the ray to it; rays.live are those whose
+  // points face it and get light from there.
+  void (*light_rays)(const LightShape& light, const LightDraw& draw, uint32_t k, const PointPacket& points,
+                     RayPacket& rays, LightSamples& out);
+
   // How many of the strata * strata ambient rays of each live point meet nothing opaque.
   void (*ambient_occlusion)(const KdView& tree, const PointPacket& points, const AmbientSettings& settings,
                             uint32_t* free_rays);
@@ -96,11 +103,12 @@ struct Kernels {
   void (*write_min)(const SurfaceView& scene, const Pinhole& camera, int x, int y, const TileVisibility& tile,
                     uint32_t wanted, MinBlock* out);
 
-  // trace_closest, closest_blocks, trace_shadows and ambient_blocks, with the same answers, which also add
-  // up what they do.
+  // trace_closest, closest_blocks, trace_any, trace_shadows and ambient_blocks, with the same answers, which
+  // also add up what they do.
   void (*count_closest)(const KdView& tree, const RayPacket& rays, HitPacket& hits, const WorkCounts& out);
   void (*count_closest_blocks)(const KdView& tree, const RayPacket* rays, int count, Shortcuts shortcuts,
                                HitPacket* hits, const WorkCounts& work);
+  uint64_t (*count_any)(const KdView& tree, const RayPacket& rays, GlassRule glass, const WorkCounts& work);
   void (*count_shadows)(const KdView& tree, const Light& light, GlassRule glass,
                         const PointPacket* const* points, int count, ShadowAnswer* out,
                         const WorkCounts& work);

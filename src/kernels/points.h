@@ -64,6 +64,19 @@ struct ShadowAnswer {
   uint64_t facing, blocked;
 };
 
+// Which samples of a light with a size are asked for: those of sample `frame` of `frames` of the picture's,
+// `samples` of them, by random numbers of their own for every `branch`.
+struct LightDraw {
+  uint32_t frame, frames, samples, branch;
+};
+
+// One sample of a light for each of 64 points.
+struct alignas(64) LightSamples {
+  float x[kPacketSize], y[kPacketSize], z[kPacketSize];  // to the light, unit
+  float strength[kPacketSize];                           // irradiance at normal incidence by its colour
+  float irradiance[kPacketSize];                         // the same by the cosine at the point
+};
+
 // Of 64 points: how many of each one's ambient rays meet nothing opaque.
 struct alignas(64) FreeRays {
   uint32_t count[kPacketSize];

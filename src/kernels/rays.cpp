@@ -3,11 +3,28 @@
 #include "kernels/points.h"
 #include "kernels/tables.h"
 #include "math/fresnel.h"
+#include "math/light.h"
 #include "math/sampling.h"
 #include "math/strata.h"
 
 namespace vitral {
 namespace VITRAL_ISA {
+namespace {
+
+// The points to which a spot sends light, by the very formula that lights them.
+uint64_t inside_cone(const Light& spot, const PointPacket& points) {
+  const SpotCone cone = spot_cone(spot);
+  uint64_t inside = 0;
+  for (int g = 0; g < kPacketSize; g += kLanes) {
+    const Vec3T<Float> way = broadcast<Float>(spot.position) - load3(points.px, points.py, points.pz, g);
+    const Vec3T<Float> to_light = way * (Float(1.0f) / square_root(dot(way, way)));
+    const Float share = spot_share(cone, spot.direction, to_light);
+    inside |= static_cast<uint64_t>(bits(share > Float(0.0f))) << g;
+  }
+  return inside;
+}
+
+}  // namespace
 
 void primary_rays(const Pinhole& camera, int x, int y, RayPacket& rays) {
   for (int g = 0; g < kPacketSize; g += kLanes) {
@@ -53,7 +70,7 @@ void mirror_rays(const PointPacket& points, RayPacket& rays) {
   }
 }
 
-// One ray per point that faces the light. Towards a point light t = 1 is the light.
+// One ray per point that faces the light. Towards a light with a position t = 1 is the light.
 void shadow_rays(const Light& light, const PointPacket& points, RayPacket& rays) {
   set_origins(points, rays);
   rays.tmin = 0;
@@ -71,6 +88,7 @@ void shadow_rays(const Light& light, const PointPacket& points, RayPacket& rays)
     rays.live |= static_cast<uint64_t>(bits(dot(n, d) > Float(0.0f))) << g;
   }
   rays.live &= points.live;
+  if (light.kind == Light::Kind::spot && rays.live != 0) rays.live &= inside_cone(light, points);
 }
 
 }  // namespace VITRAL_ISA

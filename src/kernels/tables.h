@@ -22,6 +22,8 @@ void mirror_rays(const PointPacket& points, RayPacket& rays);
 void shadow_rays(const Light& light, const PointPacket& points, RayPacket& rays);
 void trace_shadows(const KdView& tree, const Light& light, GlassRule glass, const PointPacket* const* points,
                    int count, ShadowAnswer* out);
+void light_rays(const LightShape& light, const LightDraw& draw, uint32_t k, const PointPacket& points,
+                RayPacket& rays, LightSamples& out);
 void ambient_occlusion(const KdView& tree, const PointPacket& points, const AmbientSettings& settings,
                        uint32_t* free_rays);
 void ambient_blocks(const KdView& tree, const PointPacket* const* points, int count,
@@ -29,6 +31,7 @@ void ambient_blocks(const KdView& tree, const PointPacket* const* points, int co
 void count_closest(const KdView& tree, const RayPacket& rays, HitPacket& hits, const WorkCounts& out);
 void count_closest_blocks(const KdView& tree, const RayPacket* rays, int count, Shortcuts shortcuts,
                           HitPacket* hits, const WorkCounts& work);
+uint64_t count_any(const KdView& tree, const RayPacket& rays, GlassRule glass, const WorkCounts& work);
 void count_shadows(const KdView& tree, const Light& light, GlassRule glass, const PointPacket* const* points,
                    int count, ShadowAnswer* out, const WorkCounts& work);
 void count_ambient(const KdView& tree, const PointPacket* const* points, int count,

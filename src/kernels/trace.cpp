@@ -260,6 +260,10 @@ uint64_t improve_closest(const KdView& tree, const RayPacket& rays, HitPacket& h
   return trace<Query::closest>(tree, rays, 0, GlassRule::blocks, &hits, counts);
 }
 
+uint64_t count_any(const KdView& tree, const RayPacket& rays, GlassRule glass, const WorkCounts& work) {
+  return trace<Query::any>(tree, rays, 0, glass, nullptr, Counting{work.totals, work.work});
+}
+
 uint64_t trace_any_from(const KdView& tree, uint32_t node, const RayPacket& rays, GlassRule glass,
                         Counting counts) {
   return trace<Query::any>(tree, rays, node, glass, nullptr, counts);

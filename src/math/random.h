@@ -25,8 +25,9 @@ static inline U pixel_key_of(const U& x, const U& y, uint32_t seed) {
 static inline uint32_t pixel_key(int x, int y, uint32_t seed) {
   return pixel_key_of(static_cast<uint32_t>(x), static_cast<uint32_t>(y), seed);
 }
-static inline uint32_t branch_key(uint32_t key, uint32_t branch) {
-  return hash32(key ^ (branch * 0x9e3779b9u));
+template <class U>
+static inline U branch_key(const U& key, uint32_t branch) {
+  return hash32(key ^ U(branch * 0x9e3779b9u));
 }
 // Keys are hashes already: what is added per sample only has to be odd.
 inline constexpr uint32_t kSampleStep = 0x9e3779b9u;

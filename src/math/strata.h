@@ -33,17 +33,56 @@ static inline auto unit_of_bits(const U& bits) {
   return to_float(bits >> 8) * F(0x1p-24f);
 }
 
-// `index` may differ per lane only through `key`.
+// The digits of a set's second numbers are exchanged by these bits.
 template <class U>
-static inline auto stratified_pair(uint32_t index, uint32_t count, const U& key) {
-  const U own = hash32(key + U(index * kSampleStep)), other = hash32(own ^ U(0x68bc21ebu));
+static inline U scrambled_bits(const U& key) {
+  return hash32(key ^ U(0x3c6ef372u));
+}
+
+template <class U>
+static inline auto stratified_pair(const U& index, uint32_t count, const U& key) {
+  const U own = hash32(key + index * U(kSampleStep)), other = hash32(own ^ U(0x68bc21ebu));
   using F = decltype(to_float(key));
   // Digits above the finest cells are those of the set, scrambled; those below are the sample's own.
   const uint32_t fine = count <= 1 ? 0xffffffffu : 0xffffffffu >> (32 - __builtin_clz(count - 1));
-  const U scrambled = U(reverse_bits(index)) ^ hash32(key ^ U(0x3c6ef372u));
+  const U scrambled = reverse_bits(index) ^ scrambled_bits(key);
   const U digits = (scrambled & U(~fine)) | (other & U(fine));
-  const F within = (unit_of_bits(own) + F(static_cast<float>(index))) * F(1.0f / static_cast<float>(count));
+  const F within = (unit_of_bits(own) + to_float(index)) * F(1.0f / static_cast<float>(count));
   return Pair<F>{least(within, F(0x1.fffffep-1f)), unit_of_bits(digits)};
+}
+
+// Which of a set's first n samples, n a power of two, lies in the k-th of n equal cells of the square: so
+// sets of different keys are asked for samples that lie near each other. The cells differ from key to key
+// only by what the set divides its first numbers into, if it has more than n samples.
+template <class U>
+static inline U sample_in_cell(uint32_t k, uint32_t n, const U& key) {
+  const int columns = (31 - __builtin_clz(n)) / 2;  // cells side by side in the second number: 2^columns
+  if (columns == 0) return U(k);
+  const uint32_t column = k & ((1u << columns) - 1);
+  const U low = reverse_bits(U(column) ^ (scrambled_bits(key) >> (32 - columns))) >> (32 - columns);
+  return U(k - column) + low;
+}
+
+// A random order of 0..count-1: the place of `index`. Integers of as many bits as count needs are mixed, one
+// to one, until the place falls below count.
+template <class U>
+static inline U shuffled(uint32_t index, uint32_t count, const U& key) {
+  if (count <= 1) return U(0u);
+  const int bits = 32 - __builtin_clz(count - 1);
+  const U mask = U(0xffffffffu >> (32 - bits));
+  U x = U(index), place = x;
+  auto open = x == x;
+  do {
+    for (uint32_t round = 0; round < 3; ++round) {
+      const U k = hash32(key + U(round * kSampleStep));
+      x = (x ^ k) & mask;
+      x = (x * (k | U(1u))) & mask;
+      x = x ^ (x >> ((bits + 1) / 2));
+    }
+    place = select(open, x, place);
+    open = both(open, place >= U(count));
+  } while (any(open));
+  return place;
 }
 
 }  // namespace vitral

@@ -22,6 +22,8 @@ void check_settings(const Settings& s) {
           "the number of ambient samples must be a square from 1 to 1024");
   require(s.ao_distance > 0 && std::isfinite(s.ao_distance), "the ambient distance must be greater than 0");
   require(s.ao_exponent > 0 && std::isfinite(s.ao_exponent), "the ambient exponent must be greater than 0");
+  require(s.light_samples >= 0 && s.light_samples <= kMostLightSamples,
+          "the number of light samples must be 0 (each light's own) to 1024");
   require(s.max_depth >= 0 && s.max_depth <= 100, "the depth limit must be 0 to 100");
   require(s.min_importance >= 0 && s.min_importance <= 1, "the least importance must be 0 to 1");
   require(s.threads >= 0 && s.threads <= 1024, "the number of threads must be 0 to 1024");
@@ -42,6 +44,18 @@ static void check_motion(const Camera& c) {
     there.motion.clear();
     there.position = key.position, there.view = key.view, there.up = key.up;
     check_camera(there);
+  }
+}
+
+void check_lights(const Scene& scene) {
+  for (const Light& light : scene.lights) {
+    if (!has_size(light)) continue;
+    if (light.samples < 1 || light.samples > kMostLightSamples)
+      throw UsageError("the number of a light's samples must be 1 to 1024");
+    if (light.kind == Light::Kind::sphere && !(light.radius > 0 && std::isfinite(light.radius)))
+      throw UsageError("the radius of a light must be greater than 0");
+    if (light.kind == Light::Kind::sun && !(light.diameter_degrees > 0 && light.diameter_degrees <= 180))
+      throw UsageError("the diameter of a sun must be greater than 0 and at most 180 degrees");
   }
 }
 

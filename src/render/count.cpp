@@ -99,6 +99,25 @@ void run_closest_blocks(const FrameContext& frame, Pass pass, const RayPacket* r
   }
 }
 
+uint64_t run_any(const FrameContext& frame, Pass pass, const RayPacket& rays, GlassRule glass,
+                 PassTally& tally, LaneWork* work) {
+  const KdView& tree = frame.accelerator.view;
+  if (frame.count == Count::nothing) return frame.kernels.trace_any(tree, rays, glass);
+  return frame.kernels.count_any(tree, rays, glass, counts_of(frame, pass, tally, work));
+}
+
+uint64_t run_any_glass(const FrameContext& frame, Pass pass, const RayPacket& rays, PassTally& tally,
+                       LaneWork* work) {
+  const KdView& tree = frame.accelerator.glass_view;
+  if (frame.count == Count::nothing) return frame.kernels.trace_any(tree, rays, GlassRule::blocks);
+  TraversalCounts counts{};
+  const WorkCounts out{&counts, frame.count == Count::pixels ? work : nullptr};
+  const uint64_t met = frame.kernels.count_any(tree, rays, GlassRule::blocks, out);
+  counts.rays_traced = 0;  // they have been counted
+  add(tally.traversal[static_cast<size_t>(pass)], counts);
+  return met;
+}
+
 void run_shadows(const FrameContext& frame, const Light& light, const PointPacket* const* points, int count,
                  PassTally& tally, ShadowAnswer* out, LaneWork* work) {
   const KdView& tree = frame.accelerator.view;

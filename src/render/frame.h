@@ -101,6 +101,10 @@ void run_closest(const FrameContext& frame, Pass pass, const RayPacket& rays, Pa
                  HitPacket& hits, LaneWork* work);
 void run_closest_blocks(const FrameContext& frame, Pass pass, const RayPacket* rays, int count,
                         PassTally& tally, HitPacket* hits, LaneWork* work);
+uint64_t run_any(const FrameContext& frame, Pass pass, const RayPacket& rays, GlassRule glass,
+                 PassTally& tally, LaneWork* work);
+uint64_t run_any_glass(const FrameContext& frame, Pass pass, const RayPacket& rays, PassTally& tally,
+                       LaneWork* work);  // of rays that run_any was asked for
 void run_shadows(const FrameContext& frame, const Light& light, const PointPacket* const* points, int count,
                  PassTally& tally, ShadowAnswer* out, LaneWork* work);
 void run_ambient(const FrameContext& frame, const PointPacket* const* points, int count,
@@ -138,13 +142,17 @@ bool see_surfaces(const FrameContext& frame, const TileHits& tile, size_t i, int
 // paints red those that are not finite.
 void encode_row(Vec3* colors, size_t count, Rgb8* pixels, uint64_t& not_finite);
 
-// shadow.cpp: which of the points face the light and are kept from it by something opaque, for up to
-// kTileBlocks packets that lie near each other; and then how much of it arrives at each point, per colour
-// channel: 1 lit (or facing away), 0 blocked, between for glass.
+// shadow.cpp: which of the points face a light without a size and are kept from it by something opaque, for
+// up to kTileBlocks packets that lie near each other; and then how much of it arrives at each point, per
+// colour channel: 1 lit (or facing away), 0 blocked, between for glass.
 void find_shadows(const FrameContext& frame, const Light& light, const PointPacket* const* points, int count,
                   PassTally& tally, ShadowAnswer* out, LaneWork* work);
 void light_visibility(const FrameContext& frame, const Light& light, const PointPacket& points,
                       const ShadowAnswer& answer, PassTally& tally, ColorPacket& visibility, LaneWork* work);
+
+// shadow.cpp: the latter for rays that have been traced.
+void ray_visibility(const FrameContext& frame, const RayPacket& rays, const ShadowAnswer& answer,
+                    PassTally& tally, ColorPacket& visibility, LaneWork* work);
 
 // ambient.cpp: how many of the N ambient rays of each live point are free, for up to kTileBlocks packets
 // that lie near each other; and (free/N)^exponent, 1 at lanes that are not live.

@@ -2,6 +2,7 @@
 
 #include "math/random.h"
 #include "render/gbuffer.h"
+#include "render/light_sample.h"
 #include "render/measure_picture.h"
 #include "render/render.h"
 #include "render/samples.h"
@@ -95,9 +96,14 @@ using PointsBody = std::function<void(const PointPacket* const*, int, Scratch&)>
 // All that is traced to find out what one light sends to some packets; returns how many points are blocked.
 uint64_t trace_light(const FrameContext& frame, const Light& light, const PointPacket* const* points,
                      int count, PassTally& tally) {
+  uint64_t blocked = 0;
+  if (has_size(light)) {
+    for (int i = 0; i < count; ++i)
+      blocked += count_of(trace_samples(frame, light, *points[i], tally, nullptr));
+    return blocked;
+  }
   ShadowAnswer answers[kTileBlocks];
   find_shadows(frame, light, points, count, tally, answers, nullptr);
-  uint64_t blocked = 0;
   for (int i = 0; i < count; ++i) {
     blocked += count_of(answers[i].blocked);
     if (!frame.accelerator.has_glass) continue;
@@ -229,6 +235,9 @@ void simplify(Scene& scene, Camera& camera) {
   fill_cut_outs(scene);
   for (Material& m : scene.materials) m.optics = Optics::opaque;
   scene.mesh.triangle_normals.clear();
+  for (Light& light : scene.lights) {
+    if (light.kind == Light::Kind::sun) light.kind = Light::Kind::directional;
+  }
   std::erase_if(scene.lights, [](const Light& light) { return light.kind != Light::Kind::directional; });
   const float diagonal = length(extent(bounds(scene)));
   camera.near = 1e-6f * diagonal;
@@ -246,6 +255,7 @@ Measurement measure_passes(const Scene& scene, const Camera& camera, const Setti
                            Layout layout, const Runs& runs, Control& control) {
   check_settings(wanted);
   check_camera(camera);
+  check_lights(scene);
   Settings settings = wanted;
   settings.keep_radiance = false;
   settings.aovs.clear();

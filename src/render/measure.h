@@ -17,7 +17,7 @@ namespace vitral {
 enum class RayRules { scene, anchor };
 
 // What the anchor's rules make of a scene and a camera: all materials opaque, corners without normals,
-// directional lights only, everything in view.
+// directional lights only, the sun among them, everything in view.
 void simplify(Scene& scene, Camera& camera);
 
 // Makes cut-outs whole: other rasterizers' G-buffers know no holes.

@@ -6,7 +6,7 @@
 //   per tile of 32x32 pixels, on all threads, in any order:           tile.cpp
 //     primary    what each pixel sees                                primary.cpp
 //     surface    position, normals, material there                   surface.cpp
-//     direct     light, shadows, ambient occlusion                   direct.cpp shadow.cpp ambient.cpp
+//     direct     light, shadows, ambient occlusion                   direct.cpp shadow.cpp light_sample.cpp ambient.cpp
 //     glass      reflections and refractions                         glass.cpp
 //     resolve    linear light to sRGB                                resolve.cpp
 #include "render/render.h"
@@ -104,6 +104,7 @@ Frame render_frame(const Scene& scene, Accelerator& accelerator, const Camera& c
                    const Settings& settings, ThreadPool& pool, Control& control) {
   check_settings(settings);
   check_camera(camera);
+  check_lights(scene);
   const auto start = std::chrono::steady_clock::now();
   const Rectangle crop = crop_of(settings);
 
@@ -170,6 +171,7 @@ static bool needs_tree(const Scene& scene, const Settings& settings) {
 Frame render(const Scene& scene, const Camera& camera, const Settings& settings, Control& control) {
   check_settings(settings);
   check_camera(camera);
+  check_lights(scene);
   choose_kernels(settings.isa);
   ThreadPool pool(settings.threads);
   const auto start = std::chrono::steady_clock::now();

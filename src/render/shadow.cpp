@@ -33,6 +33,13 @@ Vec3 glass_tint(const FrameContext& frame, Ray ray, TraversalCounts& counts) {
   }
 }
 
+// All or nothing, as it is without glass.
+void set_visibility(const ShadowAnswer& answer, ColorPacket& visibility) {
+  for (Vec3& v : visibility.color) v = {1, 1, 1};
+  for (uint64_t left = answer.blocked; left != 0; left &= left - 1)
+    visibility.color[__builtin_ctzll(left)] = {0, 0, 0};
+}
+
 }  // namespace
 
 void find_shadows(const FrameContext& frame, const Light& light, const PointPacket* const* points, int count,
@@ -46,16 +53,29 @@ void find_shadows(const FrameContext& frame, const Light& light, const PointPack
 
 void light_visibility(const FrameContext& frame, const Light& light, const PointPacket& points,
                       const ShadowAnswer& answer, PassTally& tally, ColorPacket& visibility, LaneWork* work) {
-  for (Vec3& v : visibility.color) v = {1, 1, 1};
-  for (uint64_t left = answer.blocked; left != 0; left &= left - 1)
-    visibility.color[__builtin_ctzll(left)] = {0, 0, 0};
-  const uint64_t lit = answer.facing & ~answer.blocked;
-  if (!frame.accelerator.has_glass || lit == 0) return;
-  const PassTimer timer(tally, Pass::shadows);
+  if (!frame.accelerator.has_glass || (answer.facing & ~answer.blocked) == 0) {
+    set_visibility(answer, visibility);
+    return;
+  }
   RayPacket rays;
-  frame.kernels.shadow_rays(light, points, rays);
+  {
+    const PassTimer timer(tally, Pass::shadows);
+    frame.kernels.shadow_rays(light, points, rays);
+  }
+  ray_visibility(frame, rays, answer, tally, visibility, work);
+}
+
+void ray_visibility(const FrameContext& frame, const RayPacket& rays, const ShadowAnswer& answer,
+                    PassTally& tally, ColorPacket& visibility, LaneWork* work) {
+  set_visibility(answer, visibility);
+  const uint64_t lit = answer.facing & ~answer.blocked;
+  if (!frame.settings.effects.shadows || !frame.accelerator.has_glass || lit == 0) return;
+  const PassTimer timer(tally, Pass::shadows);
+  RayPacket through = rays;
+  through.live = lit;
+  const uint64_t tinted = run_any_glass(frame, Pass::shadows, through, tally, work);
   TraversalCounts& counts = tally.traversal[static_cast<size_t>(Pass::shadows)];
-  for (uint64_t left = lit; left != 0; left &= left - 1) {
+  for (uint64_t left = tinted; left != 0; left &= left - 1) {
     const int lane = __builtin_ctzll(left);
     const uint64_t before = work_of(counts);
     visibility.color[lane] = glass_tint(frame, ray_of(rays, lane), counts);
