@@ -49,6 +49,8 @@ TEST(Mtl, ReadsColoursAndNumbers) {
   EXPECT_EQ(m.diffuse, (Vec3{0.1f, 0.2f, 0.3f}));
   EXPECT_EQ(m.specular, (Vec3{0.5f, 0.5f, 0.5f})) << "one number stands for three";
   EXPECT_EQ(m.transmission, (Vec3{1, 0.5f, 0}));
+  EXPECT_EQ(m.emission, (Vec3{1, 0, 0}));
+  EXPECT_EQ(parse_one("Ke 12 3 0.5\n").material.emission, (Vec3{12, 3, 0.5f})) << "light may exceed 1";
   EXPECT_EQ(m.shininess, 250);
   EXPECT_EQ(m.index, 1.33f);
   EXPECT_EQ(m.opacity, 0.75f);

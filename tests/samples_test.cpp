@@ -63,6 +63,19 @@ TEST(Strata, ARandomOrderIsAPermutationThatDependsOnTheKey) {
     EXPECT_EQ(places.size(), count);
     EXPECT_EQ(*places.rbegin(), count - 1);
   }
+  // Those of single indices, too, and every pair of places is equally likely: 12 pairs of 4 places over 12000
+  // keys, 11 degrees of freedom.
+  std::vector<int> pairs(16);
+  for (uint32_t key = 0; key < 12000; ++key)
+    ++pairs[shuffled(0, 4, hash32(key)) * 4 + shuffled(1, 4, hash32(key))];
+  double chi_of_pairs = 0;
+  for (size_t i = 0; i < 16; ++i) {
+    if (i % 5 == 0)
+      EXPECT_EQ(pairs[i], 0);
+    else
+      chi_of_pairs += (pairs[i] - 1000.0) * (pairs[i] - 1000.0) / 1000;
+  }
+  EXPECT_LT(chi_of_pairs, 31.3);  // significance 1/1000
   // Every place is equally likely: chi-squared of 10 places over 20000 keys, 9 degrees of freedom.
   double chi = 0;
   std::vector<int> hits(10);

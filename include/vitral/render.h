@@ -83,6 +83,7 @@ struct PassStats {
   double seconds = 0;  // summed over the workers
   uint64_t rays = 0;
   TraversalCounts traversal{};  // zero unless counted
+  uint64_t rays_saved = 0;      // not begun, because they weigh less than settings.min_importance
 };
 
 struct Stats {

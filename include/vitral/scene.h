@@ -48,18 +48,33 @@ enum class Optics {
   dissolve,  // no refraction: the fraction 1-d of what lies straight behind shows through
 };
 
+// A colour that a formula gives for every point of the material's own space, metres: of the world, or of the
+// object that is made of it. A solid of two colours, cut open by the surface. src/render/pattern.h has the
+// formulas.
+struct Pattern {
+  enum class Kind : uint8_t { none, checker, brick, marble };
+  Kind kind = Kind::none;
+  Vec3 first{0.8f, 0.8f, 0.8f}, second{0.1f, 0.1f, 0.1f};  // brick and mortar; ground and veins
+  float size = 1;           // side of the checker's cubes; length of a brick with its joint; between veins
+  float height = 0.3f;      // of a brick with its joint
+  float mortar = 0.05f;     // width of the joint
+  float turbulence = 0.5f;  // of the marble: how far its veins are bent, in distances between them
+};
+
 struct Material {
   std::string name;
   Vec3 diffuse{0.8f, 0.8f, 0.8f};  // Kd
   Vec3 specular{0, 0, 0};          // Ks
   Vec3 transmission{1, 1, 1};      // Tf: tint of one sheet, for refraction and for shadows
-  Vec3 reflectivity{0, 0, 0};      // a reflection of this weight at every angle, whatever the optics
-  Vec3 emission{0, 0, 0};          // Ke: light that the surface sends out by itself
+  Vec3 reflectivity{0, 0, 0};      // 0..1: mirrored at every angle. What the optics do shares the rest; the
+                                   // diffuse and highlight terms, which are no ray's, stay as they are
+  Vec3 emission{0, 0, 0};    // Ke: what the surface sends to every viewer by itself; it lights nothing else
   Vec3 absorption{0, 0, 0};  // 1/m, inside solid glass: exp(-absorption * length) is left (Beer-Lambert)
   float shininess = 0;       // Ns; 0: no highlight
   float index = 1.5f;        // Ni, index of refraction
   float opacity = 1;         // d
   Optics optics = Optics::opaque;
+  Pattern pattern;               // unless none: instead of Kd
   int diffuse_map = kNoTexture;  // map_Kd, into Scene::textures
   int opacity_map = kNoTexture;  // map_d: cut-out, visible where alpha (or, without one, grey) >= 1/2
 };

@@ -169,7 +169,7 @@ void find_view(Job& job, const Options& options) {
     view = best_view(candidate_views(mesh, aspect, wishes), triangle_counter(scene, settings, control));
   }
   job.camera = view.camera;
-  const Vec3 middle = center(core(scene.mesh)) - view.camera.position;
+  const Vec3 middle = center(core(mesh)) - view.camera.position;
   job.camera.focus = greatest(dot(middle, normalize(view.camera.view)), view.camera.near);
   override_lens(options, job.camera);
   if (job.kind == InputKind::project) return;
@@ -228,6 +228,10 @@ void load_job(Job& job, const Options& options) {
 
   if (job.automatic && options.command != Command::info) find_view(job, options);
   if (options.sun) turn_sun(*options.sun, scene);
+  if (options.background) {
+    scene.background = {};
+    scene.background.color = *options.background;
+  }
   job.load_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 

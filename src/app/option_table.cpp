@@ -35,6 +35,11 @@ Vec3 vector(const OptionRow& row, const std::string& value) {
   reject(row, value, "three numbers, X,Y,Z");
 }
 
+Vec3 color(const OptionRow& row, const std::string& value) {
+  if (const auto parsed = parse_color(value, kRadiances)) return *parsed;
+  reject(row, value, "one or three numbers, R,G,B, from 0 to 1000000");
+}
+
 Vec3 direction(const OptionRow& row, const std::string& value) {
   const Vec3 parsed = vector(row, value);
   if (!(length(parsed) > 0)) reject(row, value, "a direction, not zero");
@@ -215,6 +220,10 @@ constexpr OptionRow kTable[] = {
 
     {kLight, "--sun", "", "X,Y,Z", kFrame, "the way the sun's light travels",
      [](O& o, const R& r, const S& v) { o.sun = direction(r, v); }},
+    {kLight, "--background", "", "COLOR", kFrame,
+     "what rays see that meet nothing: R,G,B, linear, or one number (the\n"
+     "project's; 0.8 for a mesh)",
+     [](O& o, const R& r, const S& v) { o.background = color(r, v); }},
     {kLight, "--effects", "", "LIST", kFrame,
      "out of shadows,reflection,refraction,ao; or none; or all (the\n"
      "project's; all for a mesh)",

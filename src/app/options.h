@@ -39,6 +39,7 @@ struct Options {
   std::optional<int> samples;
   std::optional<Filter> filter;
 
+  std::optional<Vec3> background;
   std::optional<Effects> effects;
   std::optional<int> light_samples, ao_samples, max_depth, threads;
   std::optional<float> ao_distance, ao_exponent, min_importance;

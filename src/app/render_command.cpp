@@ -70,15 +70,16 @@ void check_outputs(const Outputs& outputs, const Job& job) {
 }
 
 void print_summary(const Outputs& outputs, const Frame& frame, const RunTimes& times) {
-  uint64_t rays = 0;
-  for (const PassStats& pass : frame.stats.passes) rays += pass.rays;
-  std::fprintf(
-      stderr,
-      "%s: %dx%d, %zu triangles, %.1f Mrays; load %s, build %s, frame %s, write %s (%d threads, %s)\n",
-      outputs.png == "-" ? "standard output" : outputs.png.c_str(), frame.pixels.width, frame.pixels.height,
-      frame.stats.triangles, static_cast<double>(rays) * 1e-6, in_words(times.load_seconds).c_str(),
-      in_words(frame.stats.build_seconds).c_str(), in_words(frame.stats.frame_seconds).c_str(),
-      in_words(times.write_seconds).c_str(), frame.stats.threads, frame.stats.isa.c_str());
+  uint64_t rays = 0, saved = 0;
+  for (const PassStats& pass : frame.stats.passes) rays += pass.rays, saved += pass.rays_saved;
+  std::fprintf(stderr,
+               "%s: %dx%d, %zu triangles, %.1f Mrays (%.1f saved); load %s, build %s, frame %s, write %s (%d "
+               "threads, %s)\n",
+               outputs.png == "-" ? "standard output" : outputs.png.c_str(), frame.pixels.width,
+               frame.pixels.height, frame.stats.triangles, static_cast<double>(rays) * 1e-6,
+               static_cast<double>(saved) * 1e-6, in_words(times.load_seconds).c_str(),
+               in_words(frame.stats.build_seconds).c_str(), in_words(frame.stats.frame_seconds).c_str(),
+               in_words(times.write_seconds).c_str(), frame.stats.threads, frame.stats.isa.c_str());
 }
 
 void stop_if_asked(const Control& control) {

@@ -93,7 +93,11 @@ std::string stats_json(const Job& job, const Stats& stats, const RunTimes& times
       .end_object()
       .begin_array("passes");
   for (const PassStats& pass : stats.passes) {
-    json.begin_object().add("name", pass.name).add("worker_seconds", pass.seconds).add("rays", pass.rays);
+    json.begin_object()
+        .add("name", pass.name)
+        .add("worker_seconds", pass.seconds)
+        .add("rays", pass.rays)
+        .add("rays_saved", pass.rays_saved);
     if (stats.counted) add_counts(json, pass.traversal);
     json.end_object();
   }

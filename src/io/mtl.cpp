@@ -12,6 +12,7 @@ namespace vitral {
 namespace {
 
 constexpr size_t kFewWarnings = 5;
+constexpr float kMostEmission = 1e6f;
 
 // What d, Tr and illum say; the optics follow from all three when the material is complete.
 struct Given {
@@ -84,6 +85,8 @@ class MtlReader {
       read_colour(m.diffuse);
     } else if (keyword == "ks") {
       read_colour(m.specular);
+    } else if (keyword == "ke") {
+      read_colour(m.emission, kMostEmission);
     } else if (keyword == "tf") {
       read_colour(m.transmission);
     } else if (keyword == "ns") {
@@ -131,15 +134,15 @@ class MtlReader {
   }
 
   // One number stands for all three. Spectral curves and CIE values are not supported.
-  void read_colour(Vec3& colour) {
+  void read_colour(Vec3& colour, float most = 1) {
     Vec3 c{0, 0, 0};
-    if (!read_value(c.x, 0, 1)) return;
+    if (!read_value(c.x, 0, most)) return;
     c.y = c.z = c.x;
     skip_blanks(c_);
     if (!at_line_end(c_)) {
-      if (!read_value(c.y, 0, 1)) return;
+      if (!read_value(c.y, 0, most)) return;
       skip_blanks(c_);
-      if (!at_line_end(c_) && !read_value(c.z, 0, 1)) return;
+      if (!at_line_end(c_) && !read_value(c.z, 0, most)) return;
     }
     colour = c;
   }

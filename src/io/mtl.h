@@ -18,7 +18,7 @@ struct MtlMaterial {
   size_t diffuse_line = 0, opacity_line = 0;
 };
 
-// Understands Kd Ks Ns Ni d Tr Tf illum map_Kd map_d; what else MTL knows is skipped. Values are
+// Understands Kd Ks Ke Ns Ni d Tr Tf illum map_Kd map_d; what else MTL knows is skipped. Values are
 // brought into their ranges; one that is no finite number is a warning and the default is kept.
 // illum decides the optics as scene.h says; any other model with d < 1 and without map_d dissolves.
 // d goes before Tr (= 1 - d). A map_Kd replaces a black Kd, which exporters write beside it, by

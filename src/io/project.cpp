@@ -23,6 +23,9 @@ void apply(const MaterialMap& map, const Source& source, Scene& scene) {
     material.optics = map.optics;
     material.index = map.index;
     (map.optics == Optics::mirror ? material.specular : material.transmission) = map.tint;
+    if (map.reflectivity) material.reflectivity = *map.reflectivity;
+    if (map.emission) material.emission = *map.emission;
+    if (map.absorption) material.absorption = *map.absorption;
   }
   if (!found) warn(source, map.line, "no material is called " + named(map.from));
 }
@@ -95,6 +98,8 @@ void load_assets(Project& project, const Pipeline& pipeline, Warnings& warnings)
   for (const MeshFile& mesh : project.meshes) load_mesh(mesh.path, project.scene, warnings);
   load_objects(project, warnings);
   const Source source{project.file, warnings};
+  apply_materials(project, project.scene, warnings);
+  load_background(project, project.scene);
   for (const MaterialMap& map : pipeline.maps) apply(map, source, project.scene);
 }
 

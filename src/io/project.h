@@ -16,7 +16,12 @@
 //         <cylinder from="0 -1 0" to="0 1 0" radius="1"/>
 //         <disk center="0 0 0" normal="0 1 0" radius="1"/>
 //         <plane point="0 0 0" normal="0 1 0"/>   without end
-//       <viewports><viewport name="..."><bgcolor COLOR/>  the background
+//       <viewports><viewport name="...">               what rays see that meet nothing:
+//         <bgcolor COLOR/>                               one colour, or
+//         <background kind="constant|gradient|panorama" color="0.6 0.75 0.95" zenith="..." file="..."
+//           scale="1"/>       gradient: from color at the horizon to zenith; panorama: a latitude-longitude
+//                             picture (PNG, JPEG, TGA, BMP) with -z in its middle, times scale. Without a
+//                             kind, a file makes it a panorama and a zenith a gradient
 //       <cameras><camera name="...">
 //         <perspective fov="60" near="0.1" far="1000"/>  fov vertical, in degrees
 //         <position VECTOR/> <view VECTOR/> <up VECTOR/>  view: the way it looks; up: 0 1 0 if left out
@@ -34,6 +39,16 @@
 //         <side VECTOR/>                           runs along the side, or else horizontally
 //         <radius>0.5</radius>                     sphere
 //         <diameter>0.53</diameter>                sun: the disk, in degrees from edge to edge
+//       <materials><material name="..." kind="opaque|mirror|polished|solid|thin|dissolve"
+//         diffuse="0.8" specular="0" transmission="1" reflectivity="0" emission="0" absorption="0"
+//         shininess="0" index="1.5" opacity="1">   what is given goes before what the libraries say of the
+//                                                  materials of this name; no library's: a new material. The
+//                                                  figures are those of Material in scene.h; a colour may
+//                                                  be an element, too: <emission r="1" g="0.5" b="0"/>
+//         <texture file="..."/> <cutout file="..."/>   map_Kd and map_d
+//         <checker first="0.8" second="0.1" size="1"/>              a pattern, instead of diffuse: one of
+//         <brick first="..." second="..." size="1" height="0.3" mortar="0.05"/>  these (Pattern in scene.h)
+//         <marble first="..." second="..." size="1" turbulence="0.5"/>
 //       <materialLibs><mlib name="a.mtl"/>         must exist; an OBJ loads its own by itself
 //     <pipelines>
 //       <pipeline name="..." default="true" defaultCamera="...">   one or more
@@ -66,13 +81,15 @@
 //   <materialMaps><map fromMaterial="Vidro" kind="thin|solid|mirror" index="1.1" tint="0.9"/>
 //
 // which gives the material of that name, in this pipeline, its glass: the index of refraction and
-// the tint (COLOR) of one sheet, or of a mirror; toMaterial and toLibrary may be there and say nothing.
+// the tint (COLOR) of one sheet, or of a mirror, and where they stand there reflectivity, emission and
+// absorption; toMaterial and toLibrary may be there and say nothing.
 #pragma once
 #include "vitral/error.h"
 #include "vitral/render.h"
 #include "vitral/scene.h"
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -84,6 +101,18 @@ struct MaterialMap {
   Optics optics = Optics::thin;  // thin, solid or mirror
   float index = 1.1f;            // of refraction, 1..10
   Vec3 tint{1, 1, 1};
+  std::optional<Vec3> reflectivity, emission, absorption;
+  size_t line = 0;
+};
+
+// What a project says of the materials of a name.
+struct MaterialFigures {
+  std::string name;
+  std::optional<Vec3> diffuse, specular, transmission, reflectivity, emission, absorption;
+  std::optional<float> shininess, index, opacity;
+  std::optional<Optics> optics;
+  std::optional<Pattern> pattern;
+  std::string texture, cut_out;  // files; empty: as they are
   size_t line = 0;
 };
 
@@ -120,6 +149,8 @@ struct Project {
   std::vector<ObjectGroup> objects;
   size_t object_count = 0;
   std::vector<std::string> libraries;  // of materials, as they can be opened
+  std::vector<MaterialFigures> materials;
+  std::string panorama;  // as it can be opened; empty: none
   Scene scene;
   std::vector<Pipeline> pipelines;  // at least one
   size_t default_pipeline = 0;

@@ -43,6 +43,8 @@ void read_viewport(Reading& reading, const XmlElement& element) {
   for (const XmlElement& child : element.children) {
     if (same_name(child.name, "bgcolor")) {
       reading.project.scene.background.color = color_of(reading.source, child, kRadiances);
+    } else if (same_name(child.name, "background")) {
+      read_background(reading, child);
     } else {
       warn_unknown_child(reading.source, element, child);
     }
@@ -70,6 +72,8 @@ void read_assets(Reading& reading, const XmlElement& assets) {
       each(reading, child, "camera", [&](const XmlElement& e) { read_camera(reading, e); });
     } else if (same_name(child.name, "lights")) {
       each(reading, child, "light", [&](const XmlElement& e) { read_light(reading, e); });
+    } else if (same_name(child.name, "materials")) {
+      each(reading, child, "material", [&](const XmlElement& e) { read_material(reading, e); });
     } else if (same_name(child.name, "materialLibs")) {
       each(reading, child, "mlib", [&](const XmlElement& e) { read_material_library(reading, e); });
     } else {

@@ -109,7 +109,8 @@ bool read_effect(const Source& source, const XmlElement& element, Settings& sett
 
 MaterialMap read_map(const Source& source, const XmlElement& element) {
   warn_unknown_attributes(source, element,
-                          {"fromMaterial", "kind", "index", "tint", "toMaterial", "toLibrary"});
+                          {"fromMaterial", "kind", "index", "tint", "reflectivity", "emission", "absorption",
+                           "toMaterial", "toLibrary"});
   MaterialMap map;
   map.line = element.line;
   map.from = attribute_or(element, "fromMaterial", "");
@@ -125,11 +126,10 @@ MaterialMap read_map(const Source& source, const XmlElement& element) {
     fail(source, element, "kind=" + named(kind) + " is not one of thin, solid, mirror");
   }
   map.index = number_attribute(source, element, "index", kIndices, map.index);
-  if (const std::string* text = find_attribute(element, "tint")) {
-    const std::optional<Vec3> tint = parse_color(*text, kTints);
-    if (!tint) fail(source, element, "tint=" + named(*text) + " is not one or three numbers from 0 to 1");
-    map.tint = *tint;
-  }
+  map.tint = color_attribute(source, element, "tint", kTints).value_or(map.tint);
+  map.reflectivity = color_attribute(source, element, "reflectivity", kTints);
+  map.emission = color_attribute(source, element, "emission", kRadiances);
+  map.absorption = color_attribute(source, element, "absorption", kAbsorptions);
   return map;
 }
 

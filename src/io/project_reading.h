@@ -4,6 +4,7 @@
 #include "io/project.h"
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,6 +21,17 @@ struct Reading {
 };
 
 void read_camera(Reading& reading, const XmlElement& element);
+// A colour written as an attribute: one or three numbers. Nothing when it is not there.
+std::optional<Vec3> color_attribute(const Source& source, const XmlElement& element, const char* name,
+                                    Range range);
+
+// project_materials.cpp: a <material> and a <background>; and what is done with them when the meshes are
+// there.
+void read_material(Reading& reading, const XmlElement& element);
+void read_background(Reading& reading, const XmlElement& element);
+void apply_materials(const Project& project, Scene& scene, Warnings& warnings);
+void load_background(const Project& project, Scene& scene);
+
 void read_assets(Reading& reading, const XmlElement& assets);
 void read_light(Reading& reading, const XmlElement& element);
 

@@ -23,6 +23,8 @@ inline constexpr Range kImportances{0, 1};
 inline constexpr Range kIndices{1, 10};
 inline constexpr Range kRadiances{0, 1e6f};
 inline constexpr Range kTints{0, 1};
+inline constexpr Range kAbsorptions{0, 1e6f};
+inline constexpr Range kShininesses{0, 1e6f};
 inline constexpr long kMostDepth = 100;
 inline constexpr long kMostSamples = 1024;
 inline constexpr Range kApertures{0, 1e6f};

@@ -50,7 +50,7 @@ void lens_rays(const Pinhole& camera, const Lens& lens, int x, int y, RayPacket&
     const Uint lane = Uint(static_cast<uint32_t>(g)) + lane_numbers();
     const Uint key = pixel_key_of(Uint(static_cast<uint32_t>(x)) + (lane & Uint(7u)),
                                   Uint(static_cast<uint32_t>(y)) + (lane >> 3), lens.seed);
-    const auto pair = stratified_pair(lens.index, lens.count, key);
+    const auto pair = stratified_pair(Uint(lens.index), lens.count, key);
     const Vec2T<Float> point = disk_point(pair.u, pair.v);
     const Vec3T<Float> p = right * (radius * point.x) + up * (radius * point.y);
     store3(rays.ox, rays.oy, rays.oz, g, load3(rays.ox, rays.oy, rays.oz, g) + p);

@@ -73,10 +73,13 @@ static inline U shuffled(uint32_t index, uint32_t count, const U& key) {
   U x = U(index), place = x;
   auto open = x == x;
   do {
-    for (uint32_t round = 0; round < 3; ++round) {
+    for (uint32_t round = 0; round < 4; ++round) {
       const U k = hash32(key + U(round * kSampleStep));
       x = (x ^ k) & mask;
-      x = (x * (k | U(1u))) & mask;
+      x = (x * ((k >> 16) | U(1u))) & mask;
+      x = x ^ (x >> (bits > 1 ? bits / 2 : 1));
+      x = (x + (k >> 24)) & mask;
+      x = (x * ((k >> 20) | U(1u))) & mask;
       x = x ^ (x >> ((bits + 1) / 2));
     }
     place = select(open, x, place);

@@ -27,6 +27,8 @@ void set_views(const Scene& scene, Accelerator& a) {
     const Vec3& kd = m.diffuse;
     a.colors.push_back({kd, in_255ths(kd.x) | in_255ths(kd.y) << 8 | in_255ths(kd.z) << 16 | 255u << 24});
   }
+  a.traits = make_traits(scene.materials);
+  a.sky = make_sky(scene);
   a.surfaces = {a.triangles.data(),
                 mesh.triangle_normals.empty() ? nullptr : mesh.triangle_normals.front().data(),
                 mesh.normals.data(), mesh.triangle_material.data(), a.colors.data()};

@@ -5,6 +5,8 @@
 #include "kdtree/object_tree.h"
 #include "kernels/points.h"
 #include "parallel/parallel_for.h"
+#include "render/background.h"
+#include "render/material_traits.h"
 #include "render/mip_map.h"
 #include "vitral/render.h"
 #include "vitral/scene.h"
@@ -51,6 +53,8 @@ struct Accelerator {
   bool has_glass = false;         // in the mesh or in objects
   bool has_cut_outs = false;      // in the mesh
   std::vector<FlatColor> colors;  // of the materials
+  TraitTable traits;
+  Sky sky;
   SurfaceView surfaces;
   PlacedObjects placed;
   std::vector<MipMap> mip_maps;  // of the scene's textures; empty: colours are those without them

@@ -40,12 +40,18 @@ void closest_of_objects(const FrameContext& frame, Pass pass, const RayPacket& r
   }
 }
 
-uint64_t any_of_objects(const FrameContext& frame, Pass pass, const RayPacket& rays, PassTally& tally,
-                        LaneWork* work) {
+uint64_t any_of_objects(const FrameContext& frame, Pass pass, const RayPacket& rays, GlassRule glass,
+                        PassTally& tally, LaneWork* work) {
   const ObjectsView& objects = frame.accelerator.placed.view;
-  if (frame.count == Count::nothing) return frame.kernels.any_objects(objects, rays, GlassRule::passes);
-  return frame.kernels.count_any_objects(objects, rays, GlassRule::passes,
-                                         counts_of(frame, pass, tally, work));
+  if (frame.count == Count::nothing) return frame.kernels.any_objects(objects, rays, glass);
+  return frame.kernels.count_any_objects(objects, rays, glass, counts_of(frame, pass, tally, work));
+}
+
+// Those of the rays that are not in `met`.
+RayPacket without(const RayPacket& rays, uint64_t met) {
+  RayPacket left = rays;
+  left.live &= ~met;
+  return left;
 }
 
 // Where the live points' rays of a length may lie.
@@ -102,20 +108,32 @@ void run_closest_blocks(const FrameContext& frame, Pass pass, const RayPacket* r
 uint64_t run_any(const FrameContext& frame, Pass pass, const RayPacket& rays, GlassRule glass,
                  PassTally& tally, LaneWork* work) {
   const KdView& tree = frame.accelerator.view;
-  if (frame.count == Count::nothing) return frame.kernels.trace_any(tree, rays, glass);
-  return frame.kernels.count_any(tree, rays, glass, counts_of(frame, pass, tally, work));
+  TracedRays traced(pass, tally);
+  const uint64_t met = frame.count == Count::nothing
+                           ? frame.kernels.trace_any(tree, rays, glass)
+                           : frame.kernels.count_any(tree, rays, glass, counts_of(frame, pass, tally, work));
+  if (!has_objects(frame) || met == rays.live) return met;
+  const RayPacket left = without(rays, met);
+  traced.walked(left.live);
+  return met | any_of_objects(frame, pass, left, glass, tally, work);
 }
 
 uint64_t run_any_glass(const FrameContext& frame, Pass pass, const RayPacket& rays, PassTally& tally,
                        LaneWork* work) {
   const KdView& tree = frame.accelerator.glass_view;
-  if (frame.count == Count::nothing) return frame.kernels.trace_any(tree, rays, GlassRule::blocks);
-  TraversalCounts counts{};
-  const WorkCounts out{&counts, frame.count == Count::pixels ? work : nullptr};
-  const uint64_t met = frame.kernels.count_any(tree, rays, GlassRule::blocks, out);
-  counts.rays_traced = 0;  // they have been counted
-  add(tally.traversal[static_cast<size_t>(pass)], counts);
-  return met;
+  uint64_t met;
+  if (frame.count == Count::nothing) {
+    met = frame.kernels.trace_any(tree, rays, GlassRule::blocks);
+  } else {
+    TraversalCounts counts{};
+    const WorkCounts out{&counts, frame.count == Count::pixels ? work : nullptr};
+    met = frame.kernels.count_any(tree, rays, GlassRule::blocks, out);
+    counts.rays_traced = 0;  // they have been counted
+    add(tally.traversal[static_cast<size_t>(pass)], counts);
+  }
+  // What is not glass does not meet these rays.
+  if (!has_objects(frame) || met == rays.live) return met;
+  return met | any_of_objects(frame, pass, without(rays, met), GlassRule::blocks, tally, work);
 }
 
 void run_shadows(const FrameContext& frame, const Light& light, const PointPacket* const* points, int count,
@@ -134,7 +152,7 @@ void run_shadows(const FrameContext& frame, const Light& light, const PointPacke
     frame.kernels.shadow_rays(light, *points[i], rays);
     rays.live = out[i].facing & ~out[i].blocked;
     if (rays.live == 0) continue;
-    out[i].blocked |= any_of_objects(frame, Pass::shadows, rays, tally, work + i);
+    out[i].blocked |= any_of_objects(frame, Pass::shadows, rays, GlassRule::passes, tally, work + i);
     traced.walked(rays.live);
   }
 }

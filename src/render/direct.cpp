@@ -1,5 +1,5 @@
 // Direct light: ambient * Kd + sum over lights of V * (Kd max(N.L, 0) + Ks max(N.H, 0)^Ns) * Lc, with
-// Blinn's halfway vector H.
+// Blinn's halfway vector H; and what the surface emits, Ke, whatever light, shadow and occlusion are.
 #include "math/light.h"
 #include "render/frame.h"
 #include "render/light_sample.h"
@@ -128,6 +128,8 @@ void light_surfaces(const FrameContext& frame, const SurfacePacket* const* surfa
       const int lane = __builtin_ctzll(left);
       if (report) light.color[lane] *= darkening[i].color[lane] * out[i].detail.ao[lane];
       light.color[lane] = light.color[lane] * own_share(frame, scene.materials[s.material[lane]]);
+      if (frame.accelerator.traits.any & kEmits)
+        light.color[lane] += scene.materials[s.material[lane]].emission;
     }
   }
 }

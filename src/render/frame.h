@@ -50,6 +50,7 @@ inline constexpr std::array<const char*, kPasses> kPassNames = {
 struct PassTally {
   std::array<double, kPasses> seconds{};
   std::array<uint64_t, kPasses> rays{};
+  std::array<uint64_t, kPasses> rays_saved{};        // not begun for want of importance
   std::array<TraversalCounts, kPasses> traversal{};  // but rays_culled
 };
 
@@ -79,6 +80,8 @@ inline void count_rays(PassTally& tally, Pass pass, uint64_t lanes) {
 inline Vec3 get(const float* x, const float* y, const float* z, int lane) {
   return {x[lane], y[lane], z[lane]};
 }
+
+enum class Side { front, back };  // of a surface
 
 // Colours of 64 points.
 struct ColorPacket {
@@ -186,9 +189,10 @@ enum class PathKind : uint8_t { reflection, refraction };
 struct Path {
   Vec3 origin, direction, weight;
   Cone cone;
-  uint32_t key;    // seeds its random numbers
-  uint16_t pixel;  // in the tile
-  uint8_t depth;   // 1: spawned at the camera's hit
+  uint32_t key;     // seeds its random numbers
+  uint32_t inside;  // the material, solid glass, that it runs through; kNoIndex: none is known
+  uint16_t pixel;   // in the tile
+  uint8_t depth;    // 1: spawned at the camera's hit
   PathKind kind;
   PathKind root;  // of the first generation
 };
@@ -196,9 +200,15 @@ struct Path {
 // glass.cpp: the camera's rays to the points of a block whose corner is (x, y) in its tile, as paths.
 void begin_paths(const FrameContext& frame, const PointPacket& points, int x, int y, Path* paths);
 
-// glass.cpp: the reflected and refracted rays that start at a surface. Lane i belongs to parents[i].
+// glass.cpp: weakens `count` paths by what the glass that they came through absorbed on the way to these
+// surfaces, or to the background. Of a path that is in no glass that it knows of, like the camera's, it is
+// the glass whose back it sees. Lane i belongs to paths[i].
+void absorb_paths(const FrameContext& frame, const SurfacePacket& surfaces, Path* paths, int count);
+
+// glass.cpp: the reflected and refracted rays that start at a surface. Lane i belongs to parents[i]. Counts
+// those that are not worth it in the tally.
 void spawn_paths(const FrameContext& frame, const SurfacePacket& surfaces, const Path* parents,
-                 std::vector<Path>& out);
+                 PassTally& tally, std::vector<Path>& out);
 
 // glass.cpp: follows paths until none is left and adds weight * light to the pixels. Returns how many of
 // them met something.

@@ -2,6 +2,7 @@
 // 1980, unrolled into generations. All paths of a generation in a tile are sorted by kind and by the
 // signs of their directions, packed 64 at a time, traced, lit like any other surface, and spawn the
 // next generation. So packets stay full although paths end at different depths.
+#include "math/absorption.h"
 #include "math/footprint.h"
 #include "math/fresnel.h"
 #include "math/random.h"
@@ -11,16 +12,15 @@
 namespace vitral {
 namespace {
 
-// The light that a surface sends on, split by direction.
+// The light that a surface sends on, split by direction: what `reflectivity` mirrors, and by the optics what
+// is left. So glass sends on no more than comes, and at total reflection all.
 struct Split {
   Vec3 reflected{0, 0, 0}, refracted{0, 0, 0};  // weights
   float eta = 1;                                // for the refracted direction; 1: straight on
   float cos_i = 1;
 };
 
-enum class Side { front, back };
-
-Split split_light(const Material& m, const Settings& settings, float cos_i, Side side) {
+Split split_by_optics(const Material& m, const Settings& settings, float cos_i, Side side) {
   Split s;
   s.cos_i = cos_i;
   const Effects& on = settings.effects;
@@ -48,6 +48,16 @@ Split split_light(const Material& m, const Settings& settings, float cos_i, Side
       break;
     }
   }
+  return s;
+}
+
+Split split_light(const Material& m, const Settings& settings, float cos_i, Side side) {
+  Split s = split_by_optics(m, settings, cos_i, side);
+  if (is_black(m.reflectivity)) return s;
+  const Vec3 rest = Vec3{1, 1, 1} - m.reflectivity;
+  s.reflected = s.reflected * rest;
+  s.refracted = s.refracted * rest;
+  if (settings.effects.reflection) s.reflected += m.reflectivity;
   return s;
 }
 
@@ -86,8 +96,29 @@ Path child_of(const Path& parent, PathKind kind, const Vec3& origin, const Vec3&
   return p;
 }
 
+// The glass on either side of a surface, as far as its hit tells: where the ray came from and where a
+// refracted one goes.
+struct Sides {
+  uint32_t here, beyond;
+};
+Sides glass_around(const FrameContext& frame, const SurfacePacket& s, int lane, const Path& path) {
+  const uint32_t material = s.material[lane];
+  if (frame.scene.materials[material].optics != Optics::solid) return {path.inside, path.inside};
+  if (s.back >> lane & 1) return {path.inside != kNoIndex ? path.inside : material, kNoIndex};
+  return {path.inside, material};
+}
+
+// True of a ray that is worth its while; one that is not is counted, unless there is no light at all in it.
+bool is_important(const FrameContext& frame, const Vec3& weight, PathKind kind, PassTally& tally) {
+  const float importance = luminance(weight);
+  if (importance >= frame.least_importance) return true;
+  const Pass pass = kind == PathKind::reflection ? Pass::reflection : Pass::refraction;
+  if (importance > 0) ++tally.rays_saved[static_cast<size_t>(pass)];
+  return false;
+}
+
 void spawn_at(const FrameContext& frame, const SurfacePacket& s, int lane, const Path& parent,
-              std::vector<Path>& out) {
+              PassTally& tally, std::vector<Path>& out) {
   const Material& m = frame.scene.materials[s.material[lane]];
   const Vec3 position = get(s.points.px, s.points.py, s.points.pz, lane);
   const Vec3 geometric = get(s.points.gx, s.points.gy, s.points.gz, lane);
@@ -102,13 +133,16 @@ void spawn_at(const FrameContext& frame, const SurfacePacket& s, int lane, const
                             : mesh_curvature(frame.scene.mesh, s.triangle[lane], geometric, n);
   const Split split = split_light(m, frame.settings, cos_i, s.back >> lane & 1 ? Side::back : Side::front);
 
-  if (luminance(parent.weight * split.reflected) >= frame.least_importance) {
+  const Sides glass = glass_around(frame, s, lane, parent);
+
+  if (is_important(frame, parent.weight * split.reflected, PathKind::reflection, tally)) {
     Vec3 d = reflect(incoming, n);
     if (!(dot(d, geometric) > 0)) d = reflect(d, geometric);
     out.push_back(child_of(parent, PathKind::reflection, position + geometric * s.points.offset[lane],
                            normalize(d), split.reflected, reflected_cone(here, turning)));
+    out.back().inside = glass.here;
   }
-  if (luminance(parent.weight * split.refracted) >= frame.least_importance) {
+  if (is_important(frame, parent.weight * split.refracted, PathKind::refraction, tally)) {
     Vec3 d = incoming;
     Cone cone = here;
     if (split.eta != 1) {
@@ -119,6 +153,7 @@ void spawn_at(const FrameContext& frame, const SurfacePacket& s, int lane, const
     }
     out.push_back(child_of(parent, PathKind::refraction, position - geometric * s.points.offset[lane],
                            normalize(d), split.refracted, cone));
+    out.back().inside = glass.beyond;
   }
 }
 
@@ -138,7 +173,7 @@ void sort_paths(const std::vector<Path>& paths, std::vector<Path>& sorted) {
 
 // Traces and lights up to 64 paths of one kind, adds their light up, spawns the next generation. Returns
 // those that met something.
-uint64_t trace_packet(const FrameContext& frame, const Path* paths, int count, std::vector<Path>& next,
+uint64_t trace_packet(const FrameContext& frame, Path* paths, int count, std::vector<Path>& next,
                       PassTally& tally, const PathSums& sums) {
   RayPacket rays;
   HitPacket hits;
@@ -170,17 +205,19 @@ uint64_t trace_packet(const FrameContext& frame, const Path* paths, int count, s
   if (surfaces.points.live != 0) light_surfaces(frame, &one, 1, tally, &lit);
 
   const PassTimer timer(tally, pass);
+  absorb_paths(frame, surfaces, paths, count);
   for (int lane = 0; lane < count; ++lane) {
     const Path& p = paths[lane];
     const bool met = surfaces.points.live >> lane & 1;
-    const Vec3 seen = met ? lit.light.color[lane] : frame.scene.background.color;
+    const Vec3 seen =
+        met ? lit.light.color[lane] : background_light(frame.scene, frame.accelerator.sky, p.direction);
     const Vec3 add = p.weight * seen;
     sums.pixels[p.pixel] += add;
     Vec3* part = p.root == PathKind::reflection ? sums.reflection : sums.refraction;
     if (part) part[p.pixel] += add;
     if (sums.cost) sums.cost[p.pixel] += work.work[lane] + (met ? lit.detail.work.work[lane] : 0.0f);
   }
-  spawn_paths(frame, surfaces, paths, next);
+  spawn_paths(frame, surfaces, paths, tally, next);
   return surfaces.points.live;
 }
 
@@ -195,17 +232,32 @@ void begin_paths(const FrameContext& frame, const PointPacket& points, int x, in
     // towards the axis.
     paths[lane].cone = {0, frame.camera.footprint * dot(paths[lane].direction, frame.camera.forward)};
     paths[lane].weight = {1, 1, 1};
+    paths[lane].inside = kNoIndex;
     paths[lane].key = points.key[lane];
     paths[lane].pixel = static_cast<uint16_t>((y + lane / kBlockSide) * kTileSide + x + lane % kBlockSide);
   }
 }
 
+void absorb_paths(const FrameContext& frame, const SurfacePacket& surfaces, Path* paths, int count) {
+  const TraitTable& traits = frame.accelerator.traits;
+  if (!(traits.any & kAbsorbs)) return;
+  for (int lane = 0; lane < count; ++lane) {
+    Path& p = paths[lane];
+    const bool met = surfaces.points.live >> lane & 1;
+    const uint32_t glass = met ? glass_around(frame, surfaces, lane, p).here : p.inside;
+    if (glass == kNoIndex || !(traits.of[glass] & kAbsorbs)) continue;
+    const PointPacket& at = surfaces.points;
+    const float way = met ? length(get(at.px, at.py, at.pz, lane) - p.origin) : kInfinity;
+    p.weight *= transmittance(frame.scene.materials[glass].absorption, way);
+  }
+}
+
 void spawn_paths(const FrameContext& frame, const SurfacePacket& surfaces, const Path* parents,
-                 std::vector<Path>& out) {
+                 PassTally& tally, std::vector<Path>& out) {
   for (int lane = 0; lane < kPacketSize; ++lane) {
     if (!(surfaces.points.live >> lane & 1) || parents[lane].depth >= frame.settings.max_depth) continue;
-    if (frame.scene.materials[surfaces.material[lane]].optics == Optics::opaque) continue;
-    spawn_at(frame, surfaces, lane, parents[lane], out);
+    if (!(frame.accelerator.traits.of[surfaces.material[lane]] & kSendsRays)) continue;
+    spawn_at(frame, surfaces, lane, parents[lane], tally, out);
   }
 }
 
@@ -215,7 +267,7 @@ uint64_t trace_paths(const FrameContext& frame, PathScratch& scratch, PassTally&
   while (!scratch.current.empty()) {
     sort_paths(scratch.current, scratch.sorted);
     scratch.next.clear();
-    const std::vector<Path>& paths = scratch.sorted;
+    std::vector<Path>& paths = scratch.sorted;
     for (size_t first = 0; first < paths.size();) {
       size_t end = first + 1;
       while (end < paths.size() && end - first < kPacketSize && paths[end].kind == paths[first].kind) ++end;

@@ -148,6 +148,27 @@ void gather_hits(const FrameContext& frame, const RayPacket& rays, const HitPack
   }
 }
 
+bool sees_back(const FrameContext& frame, const Ray& ray, const Hit& hit) {
+  const Accelerator& a = frame.accelerator;
+  const auto behind = [&](const KdTriangle& t, const Vec3& direction) {
+    const auto side = [&t](int k) {
+      return Vec3{t.corner[k][0] - t.corner[0][0], t.corner[k][1] - t.corner[0][1],
+                  t.corner[k][2] - t.corner[0][2]};
+    };
+    return dot(cross(side(1), side(2)), direction) > 0;
+  };
+  if (!is_object(a.placed.view, hit.triangle)) return behind(a.triangles[hit.triangle], ray.direction);
+  const PlacedObject& object = a.placed.view.objects[object_of(a.placed.view, hit.triangle)];
+  const ObjectRay<double> there = ray_to_object(object, ray.origin, ray.direction);
+  if (object.shape == Shape::mesh) {
+    const PlacedModel& model = *a.placed.models[object.model];
+    return behind(model.triangles[hit.triangle - object.first_number], to_float(there.direction));
+  }
+  const LineSpan<double> span = shape_span(object.shape, there.origin, there.direction);
+  const ShapePoint point = shape_point(object.shape, there.origin, there.direction, exact_end(span, hit.t));
+  return dot(point.normal, there.direction) > 0;
+}
+
 SurfaceView view_of(const FrameContext& frame, const HitTriangles& hits) {
   return {hits.triangles, hits.normal_indices, hits.normals, hits.materials, frame.accelerator.colors.data()};
 }

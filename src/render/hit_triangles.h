@@ -26,6 +26,9 @@ struct HitTriangles {
 void gather_hits(const FrameContext& frame, const RayPacket& rays, const HitPacket& hits, HitTriangles& out);
 SurfaceView view_of(const FrameContext& frame, const HitTriangles& hits);
 
+// Whether a ray meets its hit from behind: it leaves a solid there.
+bool sees_back(const FrameContext& frame, const Ray& ray, const Hit& hit);
+
 // How fast the shading normal turns along the surface, 1/radius: half the divergence of the corners' normals
 // over the triangle; greater than 0 where the side that is seen, that of `shading`, bulges out.
 float curvature(const Vec3* corners, const Vec3* normals, const Vec3& geometric, const Vec3& shading);

@@ -205,7 +205,8 @@ PassTimes measure_paths(Picture& p, const FrameContext& frame, const char* name,
         if (surfaces.points.live == 0) continue;
         Path camera_paths[kPacketSize];
         begin_paths(frame, surfaces.points, blocks[i].x - blocks->x, blocks[i].y - blocks->y, camera_paths);
-        spawn_paths(frame, surfaces, camera_paths, s.paths.current);
+        absorb_paths(frame, surfaces, camera_paths, kPacketSize);
+        spawn_paths(frame, surfaces, camera_paths, s.tally, s.paths.current);
       }
       s.counts.hits += trace_paths(frame, s.paths, s.tally, {s.color.data(), nullptr, nullptr, nullptr});
     });
@@ -233,7 +234,10 @@ void fill_cut_outs(Scene& scene) {
 
 void simplify(Scene& scene, Camera& camera) {
   fill_cut_outs(scene);
-  for (Material& m : scene.materials) m.optics = Optics::opaque;
+  for (Material& m : scene.materials) {
+    m.optics = Optics::opaque;
+    m.reflectivity = {0, 0, 0};
+  }
   scene.mesh.triangle_normals.clear();
   for (Light& light : scene.lights) {
     if (light.kind == Light::Kind::sun) light.kind = Light::Kind::directional;
@@ -247,6 +251,7 @@ void simplify(Scene& scene, Camera& camera) {
 void make_mirrors(Scene& scene) {
   for (Material& m : scene.materials) {
     m.optics = Optics::mirror;
+    m.reflectivity = {0, 0, 0};
     m.specular = {1, 1, 1};
   }
 }

@@ -6,9 +6,9 @@
 //   per tile of 32x32 pixels, on all threads, in any order:           tile.cpp
 //     primary    what each pixel sees                                primary.cpp
 //     surface    position, normals, material there                   surface.cpp
-//     direct     light, shadows, ambient occlusion                   direct.cpp shadow.cpp light_sample.cpp ambient.cpp
-//     glass      reflections and refractions                         glass.cpp
-//     resolve    linear light to sRGB                                resolve.cpp
+//     direct     light, shadows, ambient occlusion                   direct.cpp shadow.cpp light_sample.cpp
+//     ambient.cpp glass      reflections and refractions                         glass.cpp resolve    linear
+//     light to sRGB                                resolve.cpp
 #include "render/render.h"
 
 #include "math/elementary.h"
@@ -45,10 +45,11 @@ void collect_stats(const FrameContext& frame, const std::vector<Worker>& workers
     stats.tree_bytes += tree_bytes(model);
   }
   for (size_t p = 0; p < kPasses; ++p) {
-    PassStats total{kPassNames[p], 0, 0, {}};
+    PassStats total{kPassNames[p], 0, 0, {}, 0};
     for (const Worker& w : workers) {
       total.seconds += w.tally.seconds[p];
       total.rays += w.tally.rays[p];
+      total.rays_saved += w.tally.rays_saved[p];
       add(total.traversal, w.tally.traversal[p]);
     }
     if (stats.counted) total.traversal.rays_culled = total.rays - total.traversal.rays_traced;
@@ -164,7 +165,7 @@ static bool needs_tree(const Scene& scene, const Settings& settings) {
   if (settings.primary == Primary::trace || on.shadows || on.ambient_occlusion || !scene.objects.empty())
     return true;
   const bool bends = std::any_of(scene.materials.begin(), scene.materials.end(),
-                                 [](const Material& m) { return m.optics != Optics::opaque; });
+                                 [](const Material& m) { return (traits_of(m) & kSendsRays) != 0; });
   return bends && (on.reflection || on.refraction);
 }
 

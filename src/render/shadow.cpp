@@ -1,5 +1,7 @@
 // Shadows: one any-hit ray per light for a point that faces it. Opaque surfaces block; glass tints.
+#include "math/absorption.h"
 #include "render/frame.h"
+#include "render/hit_triangles.h"
 
 namespace vitral {
 namespace {
@@ -18,16 +20,47 @@ Hit nearest_glass(const FrameContext& frame, const Ray& ray, TraversalCounts& co
   return hit;
 }
 
-// What is left of the light behind all sheets of glass on the ray, nearest first. Sheets at the very
-// same t, as at the edge that two triangles of a sheet share, count once.
+// What passes a surface of glass on the straight way.
+Vec3 tint_of(const Material& m) {
+  const Vec3 tint = m.optics == Optics::dissolve ? Vec3{1, 1, 1} * (1 - m.opacity) : m.transmission;
+  return tint * (Vec3{1, 1, 1} - m.reflectivity);
+}
+
+// The absorbing glass that a ray runs through since `since`.
+struct Inside {
+  const Material* glass = nullptr;
+  float since = 0;
+};
+
+// At a surface of solid glass the ray leaves what it was in (before the first one it was in the glass whose
+// back it sees) or enters it.
+void cross_surface(const Material& m, Side side, float t, float unit, Inside& inside, Vec3& tint) {
+  if (!inside.glass && side == Side::back) inside.glass = &m;
+  if (inside.glass) tint *= transmittance(inside.glass->absorption, (t - inside.since) * unit);
+  inside = {side == Side::front ? &m : nullptr, t};
+}
+
+// What is left of the light behind all sheets of glass on the ray, nearest first, and what the solid ones
+// absorb between their surfaces. Sheets at the very same t, as at the edge that two triangles of a sheet
+// share, count once.
 Vec3 glass_tint(const FrameContext& frame, Ray ray, TraversalCounts& counts) {
   Vec3 tint{1, 1, 1};
+  const bool absorbs = (frame.accelerator.traits.any & kAbsorbs) != 0;
+  const float unit = absorbs ? length(ray.direction) : 1;
+  Inside inside;
   for (;;) {
     const Hit hit = nearest_glass(frame, ray, counts);
-    if (hit.triangle == kNoTriangle) return tint;
+    if (hit.triangle == kNoTriangle) {
+      // A light in the midst of glass. One at infinity is in none.
+      if (inside.glass && ray.tmax < kInfinity)
+        tint *= transmittance(inside.glass->absorption, (ray.tmax - inside.since) * unit);
+      return tint;
+    }
     const Material& m =
         frame.scene.materials[material_of(frame.scene, frame.accelerator.placed, hit.triangle)];
-    tint *= m.optics == Optics::dissolve ? Vec3{1, 1, 1} * (1 - m.opacity) : m.transmission;
+    tint *= tint_of(m);
+    if (absorbs && m.optics == Optics::solid)
+      cross_surface(m, sees_back(frame, ray, hit) ? Side::back : Side::front, hit.t, unit, inside, tint);
     if (!(luminance(tint) > 0)) return {0, 0, 0};
     ray.tmin = hit.t;
   }

@@ -63,6 +63,23 @@ void add_cost(const FrameContext& frame, Worker& worker) {
   }
 }
 
+// The background where the pixels `lanes` of the i-th block of kBlocksInOrder, whose corner is (x, y), see
+// nothing; a constant one is there already.
+void see_background(const FrameContext& frame, size_t i, int x, int y, uint64_t lanes, int tile_x, int tile_y,
+                    Worker& worker) {
+  if (frame.scene.background.kind == Background::Kind::constant) return;
+  const RayPacket& traced = worker.seen.rays[i];
+  for (uint64_t left = lanes; left != 0; left &= left - 1) {
+    const int lane = __builtin_ctzll(left);
+    const Vec3 direction = frame.raster
+                               ? primary_direction(frame.camera, static_cast<float>(x + lane % kBlockSide),
+                                                   static_cast<float>(y + lane / kBlockSide))
+                               : get(traced.dx, traced.dy, traced.dz, lane);
+    worker.color[tile_pixel(x - tile_x, y - tile_y, lane)] =
+        background_light(frame.scene, frame.accelerator.sky, direction);
+  }
+}
+
 }  // namespace
 
 Rectangle crop_of(const Settings& s) {
@@ -123,7 +140,9 @@ void render_tile(const FrameContext& frame, const Rectangle& crop, int tile_x, i
     const int x = tile_x + block % kTileBlocksAcross * kBlockSide,
               y = tile_y + block / kTileBlocksAcross * kBlockSide;
     SurfacePacket& surfaces = worker.surfaces[static_cast<size_t>(count)];
-    if (!see_surfaces(frame, tile, i, x, y, surfaces)) continue;
+    const bool sees_any = see_surfaces(frame, tile, i, x, y, surfaces);
+    see_background(frame, i, x, y, lanes[i] & ~surfaces.points.live, tile_x, tile_y, worker);
+    if (!sees_any) continue;
     for (int lane = 0; lane < kPacketSize; ++lane)
       surfaces.points.key[lane] =
           pixel_key(x + lane % kBlockSide, y + lane / kBlockSide, frame.settings.seed);
@@ -138,16 +157,17 @@ void render_tile(const FrameContext& frame, const Rectangle& crop, int tile_x, i
     const SurfacePacket& surfaces = *seen[i];
     Path camera_paths[kPacketSize];
     begin_paths(frame, surfaces.points, corner_x[i] - tile_x, corner_y[i] - tile_y, camera_paths);
+    absorb_paths(frame, surfaces, camera_paths, kPacketSize);
     for (uint64_t left = surfaces.points.live; left != 0; left &= left - 1) {
       const int lane = __builtin_ctzll(left);
       if (frame.sample == 0) ++worker.covered;
-      worker.color[camera_paths[lane].pixel] = lit[i].light.color[lane];
+      worker.color[camera_paths[lane].pixel] = lit[i].light.color[lane] * camera_paths[lane].weight;
       if (sums.cost) sums.cost[camera_paths[lane].pixel] += lit[i].detail.work.work[lane];
       if (out.aovs.any)
         write_aovs(frame, out.aovs, surfaces, lit[i].detail, lane,
                    frame_pixel(crop, corner_x[i] + lane % kBlockSide, corner_y[i] + lane / kBlockSide));
     }
-    spawn_paths(frame, surfaces, camera_paths, worker.paths.current);
+    spawn_paths(frame, surfaces, camera_paths, worker.tally, worker.paths.current);
   }
   trace_paths(frame, worker.paths, worker.tally, sums);
 
