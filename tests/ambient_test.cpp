@@ -1,6 +1,7 @@
 // The ambient pass takes shortcuts: no rays where nothing is near, no tree where little is. None may
 // be seen: every point's count of free rays is that of its rays tested one by one against everything.
 #include "kernels/kernels.h"
+#include "kernels/ray_offset.h"
 #include "math/random.h"
 #include "math/sampling.h"
 #include "render/kernel_choice.h"
@@ -59,8 +60,7 @@ PointPacket points_on(Random& random, const std::vector<KdTriangle>& triangles, 
     p.px[lane] = x.x, p.py[lane] = x.y, p.pz[lane] = x.z;
     p.gx[lane] = g.x, p.gy[lane] = g.y, p.gz[lane] = g.z;
     p.nx[lane] = n.x, p.ny[lane] = n.y, p.nz[lane] = n.z;
-    p.offset[lane] =
-        ray_offset(greatest(largest_component(a), greatest(largest_component(b), largest_component(c))));
+    p.offset[lane] = ray_offset(a, b, c, g);
     p.key[lane] = random.bits();
   }
   return p;

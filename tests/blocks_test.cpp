@@ -2,6 +2,7 @@
 // without being traced. None of that may be seen: ray for ray the answers are those of the walk through
 // the tree, and of testing every triangle.
 #include "kernels/kernels.h"
+#include "kernels/ray_offset.h"
 #include "render/kernel_choice.h"
 #include "support.h"
 
@@ -72,8 +73,7 @@ PointPacket point_on(Random& random, const std::vector<KdTriangle>& triangles,
     p.px[lane] = x.x, p.py[lane] = x.y, p.pz[lane] = x.z;
     p.gx[lane] = g.x, p.gy[lane] = g.y, p.gz[lane] = g.z;
     p.nx[lane] = n.x, p.ny[lane] = n.y, p.nz[lane] = n.z;
-    p.offset[lane] =
-        ray_offset(greatest(largest_component(a), greatest(largest_component(b), largest_component(c))));
+    p.offset[lane] = ray_offset(a, b, c, g);
     if (random.below(8) == 0) p.offset[lane] = 0;
     p.key[lane] = random.bits();
   }

@@ -100,6 +100,8 @@ TEST(Options, ReadsEveryOptionOfRender) {
                                    "depth,ao,depth",
                                    "--primary",
                                    "trace",
+                                   "--terminator",
+                                   "smooth",
                                    "--stats",
                                    "-",
                                    "--quiet"});
@@ -138,6 +140,7 @@ TEST(Options, ReadsEveryOptionOfRender) {
   EXPECT_EQ(o.seed, 4294967295u);
   EXPECT_EQ(o.aovs, (Words{"depth", "ao"})) << "each once";
   EXPECT_EQ(o.primary, Primary::trace);
+  EXPECT_EQ(o.terminator, Terminator::smooth);
   EXPECT_EQ(o.stats, "-");
   EXPECT_TRUE(o.quiet);
 }
@@ -206,6 +209,7 @@ TEST(Options, RefusesValuesOutOfRange) {
       {"--seed", {"-1", "4294967296"}},
       {"--isa", {"sse", ""}},
       {"--primary", {"both"}},
+      {"--terminator", {"", "soft", "Smooth"}},
       {"--aov", {"", "depth,"}},
       {"--crop", {"0,0,0x0", "-1,0,5x5", "1,2", "1,2,3x4x5"}},
       {"--output", {""}},

@@ -73,13 +73,13 @@ TEST(Project, ReadsTheReportsVocabulary) {
   <pipelines>
     <pipeline name="plain"><pass class="default" name="r"/></pipeline>
     <pipeline name="full" default="true" defaultCamera="Other">
-      <pass class="raster" name="r">
+      <pass class="raster" name="r" primary="trace">
         <camera name="Fonte"/> <viewport>v</viewport>
         <scenes><scene name="Main"/></scenes> <lights><light name="Sun"/></lights>
         <materialMaps><map fromMaterial="Vidro" kind="solid" index="1.3" tint="0.9 0.8 0.7" toMaterial="x"/></materialMaps>
       </pass>
       <pass class="optix" name="t" seed="7">
-        <shadows/>
+        <shadows terminator="smooth"/>
         <reflection maxDepth="3" fresnel="schlick"/>
         <ambientOcclusion samples="25" distance="2" exponent="1.6"/>
       </pass>
@@ -126,6 +126,10 @@ TEST(Project, ReadsTheReportsVocabulary) {
   EXPECT_EQ(full.settings.ao_distance, 2);
   EXPECT_EQ(full.settings.ao_exponent, 1.6f);
   EXPECT_EQ(full.settings.seed, 7u);
+  EXPECT_EQ(full.settings.primary, Primary::trace);
+  EXPECT_EQ(full.settings.terminator, Terminator::smooth);
+  EXPECT_EQ(project.pipelines[0].settings.primary, Primary::raster);
+  EXPECT_EQ(project.pipelines[0].settings.terminator, Terminator::facet);
   EXPECT_EQ(full.settings.compositing, Compositing::report);
   ASSERT_EQ(full.maps.size(), 1u);
   EXPECT_EQ(full.maps[0].from, "Vidro");

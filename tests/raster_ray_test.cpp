@@ -1,10 +1,12 @@
 // Rasterized and traced primary hits agree: the same triangle in every pixel whose centre lies farther than
 // 1/128 pixel from a projected edge, and there, as wherever the triangle is the same, the same bytes.
+#include "io/project.h"
 #include "raster_support.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
 
 namespace vitral {
 namespace {
@@ -128,12 +130,15 @@ struct Agreement {
   size_t compared = 0, same_near_edges = 0, different = 0, at_meeting_planes = 0;
 };
 
-Agreement compare(const Scene& scene, const Camera& camera, Isa isa) {
+Settings without_effects() {
   Settings settings;
+  settings.effects = test::kNoEffects;
+  return settings;
+}
+
+Agreement compare(const Scene& scene, const Camera& camera, Settings settings) {
   settings.width = kWidth, settings.height = kHeight;
   settings.threads = 1;
-  settings.effects = test::kNoEffects;
-  settings.isa = isa;
   settings.aovs = {"primitive", "depth", "normal", "albedo"};
   settings.primary = Primary::raster;
   const Frame raster = test::render_scene(scene, camera, settings);
@@ -149,7 +154,8 @@ Agreement compare(const Scene& scene, const Camera& camera, Isa isa) {
       const float a = raster.aovs[0].pixels.pixels[i].x, b = traced.aovs[0].pixels.pixels[i].x;
       if (a == b) {
         (near[i] ? sum.same_near_edges : sum.compared) += 1;
-        bool same = std::memcmp(&raster.pixels.pixels[i], &traced.pixels.pixels[i], sizeof(Rgb8)) == 0;
+        bool same = std::memcmp(&raster.pixels.pixels[i], &traced.pixels.pixels[i], sizeof(Rgb8)) == 0 &&
+                    std::memcmp(&raster.radiance.pixels[i], &traced.radiance.pixels[i], sizeof(Vec3)) == 0;
         for (size_t aov = 0; aov < raster.aovs.size(); ++aov) {
           same &= std::memcmp(&raster.aovs[aov].pixels.pixels[i], &traced.aovs[aov].pixels.pixels[i],
                               sizeof(Vec3)) == 0;
@@ -182,13 +188,49 @@ TEST(RasterRay, TheSameTriangleFartherThanA128thPixelFromEdges) {
     const Paths paths = paths_taken(frame, scene.mesh);
     EXPECT_TRUE(paths.small > 0 && paths.cells > 0 && paths.clipped > 0) << camera.fov;
     large += paths.large;
-    const Agreement a = compare(scene, camera, Isa::automatic);
+    const Agreement a = compare(scene, camera, without_effects());
     compared += a.compared, different += a.different;
     EXPECT_LT(a.at_meeting_planes, 10u);
   }
   EXPECT_GT(compared, 320000u);
   EXPECT_LT(different, 200u);
   EXPECT_GT(large, 2u);
+}
+
+// With every effect that a scene asks for, what is seen by way of the camera's hit has the same bits, too.
+TEST(RasterRay, TheSamePictureOfTheSmallScenes) {
+  size_t compared = 0, different = 0;
+  for (const char* name : {"ambient_occlusion", "cutout", "glass_solid", "highlight", "near_clip",
+                           "point_light", "polished", "shadow", "terminator", "texture"}) {
+    SCOPED_TRACE(name);
+    Warnings warnings;
+    const Project project = load_project(std::string("scenes/") + name + ".xml", warnings);
+    const Pipeline& pipeline = project.pipelines[project.default_pipeline];
+    ASSERT_EQ(project.scene.cameras.front().name, pipeline.camera);
+    const Agreement a = compare(project.scene, project.scene.cameras.front(), pipeline.settings);
+    compared += a.compared, different += a.different;
+    EXPECT_EQ(a.at_meeting_planes, 0u);
+  }
+  EXPECT_GT(compared, 300000u);
+  EXPECT_LT(different, 100u);
+}
+
+TEST(RasterRay, TheSamePictureOfLooseTriangles) {
+  Scene scene;
+  Material m;
+  const uint32_t plain = test::add_material(scene, m);
+  m.optics = Optics::mirror, m.specular = {0.5f, 0.5f, 0.5f};
+  const uint32_t mirror = test::add_material(scene, m);
+  test::Random random(72);
+  test::add_triangles(scene, plain, test::soup(random, 600, 0.3f));
+  test::add_triangles(scene, mirror, test::soup(random, 40, 0.6f));
+  scene.lights = {test::sun({0.3f, -1, -0.6f})};
+  Settings settings;
+  settings.ao_samples = 4;
+  const Agreement a = compare(scene, test::camera_at({0.1f, 0.2f, 3}, {0, 0, -1}, 45), settings);
+  EXPECT_GT(a.compared, 50000u);
+  EXPECT_LT(a.different, 100u);
+  EXPECT_LT(a.at_meeting_planes, 30u);
 }
 
 }  // namespace

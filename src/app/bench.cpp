@@ -83,6 +83,7 @@ std::string measure(const Job& job, const Options& options) {
 int run_bench(const Options& options) {
   check_options(options);
   Job job = plan_job(options);
+  if (options.layout) job.pipeline.settings.primary = Primary::raster;  // whatever the project says
   if (!options.report) check_memory(job, layout_of(options));
   report_warnings(job.warnings, options);
   load_job(job, options);

@@ -69,6 +69,7 @@ void override_settings(const Options& options, Settings& settings) {
   override_with(options.min_importance, settings.min_importance);
   override_with(options.fresnel, settings.fresnel);
   override_with(options.primary, settings.primary);
+  override_with(options.terminator, settings.terminator);
   override_with(options.isa, settings.isa);
   override_with(options.threads, settings.threads);
   override_with(options.seed, settings.seed);

@@ -246,6 +246,12 @@ constexpr OptionRow kTable[] = {
      [](O& o, const R& r, const S& v) {
        o.fresnel = one_of(r, v, {Fresnel::exact, Fresnel::schlick, Fresnel::report});
      }},
+    {kLight, "--terminator", "", "HOW", kFrame,
+     "where shadow rays leave smooth meshes: facet, or smooth so that\n"
+     "coarse facets do not show at the edge of the night side (facet)",
+     [](O& o, const R& r, const S& v) {
+       o.terminator = one_of(r, v, {Terminator::facet, Terminator::smooth});
+     }},
     {kLight, "--seed", "", "N", kFrame, "another number, another noise (1)",
      [](O& o, const R& r, const S& v) { o.seed = seed(r, v); }},
 
@@ -348,6 +354,10 @@ const char* name_of(Filter filter) {
 
 const char* name_of(Primary primary) {
   return primary == Primary::raster ? "raster" : "trace";
+}
+
+const char* name_of(Terminator terminator) {
+  return terminator == Terminator::facet ? "facet" : "smooth";
 }
 
 }  // namespace vitral

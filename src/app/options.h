@@ -46,6 +46,7 @@ struct Options {
   std::optional<Fresnel> fresnel;
   std::optional<Isa> isa;
   std::optional<Primary> primary;
+  std::optional<Terminator> terminator;
   std::optional<uint32_t> seed;
   std::vector<std::string> aovs;
 
@@ -76,6 +77,7 @@ const char* name_of(Fresnel fresnel);
 const char* name_of(Compositing compositing);
 const char* name_of(Primary primary);
 const char* name_of(Filter filter);
+const char* name_of(Terminator terminator);
 const char* name_of(Layout layout);
 
 }  // namespace vitral

@@ -25,6 +25,7 @@ void add_settings(JsonWriter& json, const Settings& settings) {
       .add("fresnel", name_of(settings.fresnel))
       .add("compositing", name_of(settings.compositing))
       .add("primary", name_of(settings.primary))
+      .add("terminator", name_of(settings.terminator))
       .add("seed", uint64_t{settings.seed});
   if (settings.crop.width > 0) {
     json.begin_object("crop")

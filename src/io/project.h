@@ -52,11 +52,14 @@
 //       <materialLibs><mlib name="a.mtl"/>         must exist; an OBJ loads its own by itself
 //     <pipelines>
 //       <pipeline name="..." default="true" defaultCamera="...">   one or more
-//         <pass class="raster" name="..."          the targets pos, norm, color (other name: default)
+//         <pass class="raster" name="..."          the targets pos, norm, color (other name: default),
+//               primary="raster|trace"             found by the rasterizer, or by the tracer along such rays
 //               samples="1" filter="box|tent|mitchell"/>   per pixel, 1..65536: over the pixel, lens and
 //               shutter
 //         <pass class="trace" name="...">          (other name: optix); empty: a pass-through
-//           <shadows samples="16"/>                for all lights with a size; or else their own
+//           <shadows samples="16"                  for all lights with a size; or else their own
+//                    terminator="facet|smooth"/>   where their rays leave meshes with normals: the triangle,
+//                                                  or the smooth surface that it stands for
 //           <reflection maxDepth="5" minImportance="0.005" fresnel="exact|schlick|report"/>
 //           <refraction maxDepth="5" minImportance="0.005" fresnel="exact|schlick|report"/>
 //           <ambientOcclusion samples="16" distance="0.5" exponent="1"/>   samples: a square number

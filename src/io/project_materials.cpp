@@ -212,7 +212,8 @@ void read_background(Reading& reading, const XmlElement& element) {
   b.scale = number_attribute(source, element, "scale", kRadiances, b.scale);
   if (b.kind != Background::Kind::panorama) return;
   if (!has_file) fail(source, element, "a panorama needs a file");
-  reading.project.panorama = find_beside(source.file, picture_of(reading, element, attribute_or(element, "file", "")));
+  reading.project.panorama =
+      find_beside(source.file, picture_of(reading, element, attribute_or(element, "file", "")));
 }
 
 void load_background(const Project& project, Scene& scene) {

@@ -39,6 +39,7 @@ struct Figures {
   Figure<float> importance;
   Figure<Fresnel> fresnel;
   Figure<Compositing> compositing;
+  Figure<Primary> primary;
 };
 
 // reflection or refraction: the figures of the paths they share.
@@ -84,13 +85,22 @@ void read_sampling(const Source& source, const XmlElement& pass, Settings& setti
   }
 }
 
+void read_shadows(const Source& source, const XmlElement& element, Settings& settings) {
+  warn_unknown_attributes(source, element, {"samples", "terminator"});
+  settings.light_samples = static_cast<int>(
+      integer_attribute(source, element, "samples", 1, kMostLightSamples, settings.light_samples));
+  if (const std::string* text = find_attribute(element, "terminator")) {
+    const std::optional<Terminator> terminator = parse_terminator(*text);
+    if (!terminator) fail(source, element, "terminator=" + named(*text) + " is neither facet nor smooth");
+    settings.terminator = *terminator;
+  }
+}
+
 // True when the element was one of the effects of a trace pass.
 bool read_effect(const Source& source, const XmlElement& element, Settings& settings, Figures& figures) {
   Effects& effects = settings.effects;
   if (same_name(element.name, "shadows")) {
-    warn_unknown_attributes(source, element, {"samples"});
-    settings.light_samples = static_cast<int>(
-        integer_attribute(source, element, "samples", 1, kMostLightSamples, settings.light_samples));
+    read_shadows(source, element, settings);
     effects.shadows = true;
   } else if (same_name(element.name, "reflection")) {
     read_paths(source, element, figures);
@@ -160,10 +170,16 @@ PassClass read_pass(const Reading& reading, const XmlElement& pass, Pipeline& pi
   const Source& source = reading.source;
   const PassClass what = pass_class(source, pass);
   if (what == PassClass::raster) {
-    warn_unknown_attributes(source, pass, {"class", "name", "compositing", "seed", "samples", "filter"});
+    warn_unknown_attributes(source, pass,
+                            {"class", "name", "compositing", "seed", "primary", "samples", "filter"});
     read_sampling(source, pass, pipeline.settings);
   } else {
     warn_unknown_attributes(source, pass, {"class", "name", "compositing", "seed"});
+  }
+  if (const std::string* text = find_attribute(pass, "primary"); text && what == PassClass::raster) {
+    const std::optional<Primary> primary = parse_primary(*text);
+    if (!primary) fail(source, pass, "primary=" + named(*text) + " is neither raster nor trace");
+    figures.primary.set(source, pass, "primary", *primary);
   }
   if (const std::string* text = find_attribute(pass, "compositing")) {
     const std::optional<Compositing> compositing = parse_compositing(*text);
@@ -214,6 +230,7 @@ Pipeline read_pipeline(const Reading& reading, const XmlElement& element, const 
   settings.min_importance = figures.importance.value.value_or(settings.min_importance);
   settings.fresnel = figures.fresnel.value.value_or(settings.fresnel);
   settings.compositing = figures.compositing.value.value_or(settings.compositing);
+  settings.primary = figures.primary.value.value_or(settings.primary);
   settings.seed = static_cast<uint32_t>(figures.seed.value.value_or(settings.seed));
   if (pipeline.camera.empty() && !project.scene.cameras.empty()) {
     pipeline.camera = project.scene.cameras.front().name;

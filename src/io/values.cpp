@@ -98,4 +98,16 @@ std::optional<Filter> parse_filter(std::string_view text) {
   return {};
 }
 
+std::optional<Primary> parse_primary(std::string_view text) {
+  if (text == "raster") return Primary::raster;
+  if (text == "trace") return Primary::trace;
+  return {};
+}
+
+std::optional<Terminator> parse_terminator(std::string_view text) {
+  if (text == "facet") return Terminator::facet;
+  if (text == "smooth") return Terminator::smooth;
+  return {};
+}
+
 }  // namespace vitral

@@ -44,5 +44,7 @@ std::optional<long> parse_samples(std::string_view text);
 std::optional<Fresnel> parse_fresnel(std::string_view text);          // exact, schlick, report
 std::optional<Compositing> parse_compositing(std::string_view text);  // physical, report
 std::optional<Filter> parse_filter(std::string_view text);            // box, tent, mitchell
+std::optional<Primary> parse_primary(std::string_view text);          // raster, trace
+std::optional<Terminator> parse_terminator(std::string_view text);    // facet, smooth
 
 }  // namespace vitral

@@ -44,7 +44,8 @@ static inline void make_facet(const SurfaceView& scene, uint32_t triangle, const
   out.triangle = triangle;
   Facet<float, bool>& f = out.facet;
   const KdTriangle& t = scene.triangles[triangle];
-  set_corners(corner_of(t, 0), corner_of(t, 1), corner_of(t, 2), eye, f);
+  const float more_offset = scene.more_offset == nullptr ? 0.0f : scene.more_offset[triangle];
+  set_corners(corner_of(t, 0), corner_of(t, 1), corner_of(t, 2), eye, more_offset, f);
   f.smooth = !is_flat(scene, triangle);
   for (int k = 0; k < 3; ++k) {
     f.corner_normal[k] =
@@ -59,7 +60,7 @@ static inline void make_facet(const SurfaceView& scene, uint32_t triangle, const
           broadcast(f.ac),
           {broadcast(f.from_eye[0]), broadcast(f.from_eye[1]), broadcast(f.from_eye[2])},
           broadcast(f.normal),
-          Float(f.magnitude),
+          Float(f.offset),
           {broadcast(f.corner_normal[0]), broadcast(f.corner_normal[1]), broadcast(f.corner_normal[2])},
           mask_of_bits(f.smooth ? kAllLanes : 0)};
 }
@@ -74,7 +75,10 @@ static inline void make_facet(const SurfaceView& scene, uint32_t triangle, const
   for (int k = 0; k < 3; ++k) {
     gather3(scene.triangles->corner[k], stride, numbers, corner[k].x, corner[k].y, corner[k].z);
   }
-  set_corners(corner[0], corner[1], corner[2], broadcast(eye), f);
+  alignas(64) float more_offset[kLanes] = {};
+  for (int i = 0; scene.more_offset != nullptr && i < count; ++i)
+    more_offset[i] = scene.more_offset[numbers[i]];
+  set_corners(corner[0], corner[1], corner[2], broadcast(eye), load(more_offset), f);
   uint32_t smooth = 0;
   uint32_t index[3][kLanes] = {};
   if (scene.normal_indices != nullptr) {
@@ -154,7 +158,7 @@ static inline Vec3T<Float> pick(const Vec3T<Float>& table, Uint place) {
           pick(f.ac, place),
           {pick(f.from_eye[0], place), pick(f.from_eye[1], place), pick(f.from_eye[2], place)},
           pick(f.normal, place),
-          pick(f.magnitude, place),
+          pick(f.offset, place),
           {pick(f.corner_normal[0], place), pick(f.corner_normal[1], place), pick(f.corner_normal[2], place)},
           pick(select(f.smooth, Uint(1), Uint(0)), place) == Uint(1)};
 }

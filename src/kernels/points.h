@@ -26,6 +26,7 @@ struct alignas(64) SurfacePacket {
   uint32_t triangle[kPacketSize];
   float turning[kPacketSize];  // of points on objects: 1/radius, see curvature() in render/hit_triangles.h
   uint64_t back = 0;           // lanes that see the back of their triangle
+  float lx[kPacketSize], ly[kPacketSize], lz[kPacketSize];  // lifted_position(); only with Lift::smooth
 };
 
 // A material's colour without its texture.
@@ -41,19 +42,18 @@ struct SurfaceView {
   const Vec3* normals;
   const uint32_t* materials;  // of each triangle
   const FlatColor* colors;    // of each material
+  // Of each triangle, how much its points' offset is greater than its corners say: dot(|n|,
+  // placement_error()) where it stands for one in another space; null: nowhere.
+  const float* more_offset = nullptr;
 };
 
-// A secondary ray starts this far off the surface along the geometric normal. A position is computed
-// from its triangle's corners, the largest coordinate of which is `magnitude`, with an error of about
-// 2^-22 of that: the offset is well beyond it, and knows nothing of the rest of the scene.
-template <class F>
-static inline F ray_offset(const F& magnitude) {
-  return magnitude * F(1.0f / 262144.0f);
-}
+// Where shadow rays start: at the points, or lifted to the smooth surface that the corners' normals suggest.
+enum class Lift { none, smooth };
 
 // How far off the surface secondary rays start: as far as rounding asks for, or a fixed distance.
 struct OffsetRule {
   float fixed;  // 0: ray_offset() of the point's own triangle
+  Lift lift = Lift::none;
 };
 
 // Whether work is skipped that cannot change the answer. Tests compare the two.

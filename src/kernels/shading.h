@@ -1,6 +1,7 @@
 // Triangles as surfaces and the normals of their points, written once for a number and for a register of
 // them.
 #pragma once
+#include "kernels/ray_offset.h"
 #include "math/scalar.h"
 #include "vitral/vec.h"
 
@@ -59,23 +60,43 @@ struct Facet {
   Vec3T<F> a, ab, ac;         // corner a, and from there to b and c
   Vec3T<F> from_eye[3];       // from the camera to the corners
   Vec3T<F> normal;            // geometric, of the front
-  F magnitude;                // of the largest coordinate
+  F offset;                   // secondary rays start this far off
   Vec3T<F> corner_normal[3];  // they mean nothing unless
   M smooth;                   // the corners have normals
 };
 
-template <class F>
-static inline F largest(const Vec3T<F>& v) {
-  return greatest(absolute(v.x), greatest(absolute(v.y), absolute(v.z)));
-}
-
 template <class F, class M>
 [[gnu::always_inline]] static inline void set_corners(const Vec3T<F>& a, const Vec3T<F>& b, const Vec3T<F>& c,
-                                                      const Vec3T<F>& eye, Facet<F, M>& out) {
+                                                      const Vec3T<F>& eye, const F& more_offset,
+                                                      Facet<F, M>& out) {
   out.a = a, out.ab = b - a, out.ac = c - a;
   out.from_eye[0] = a - eye, out.from_eye[1] = b - eye, out.from_eye[2] = c - eye;
   out.normal = facet_normal(a, b, c);
-  out.magnitude = greatest(largest(a), greatest(largest(b), largest(c)));
+  out.offset = ray_offset(a, b, c, out.normal) + more_offset;
+}
+
+// Where shadow rays from a point p of a smooth triangle start so that coarse facets do not show in the shadow
+// that a round body casts on itself: p is projected along each corner's normal onto the plane that touches
+// the smooth surface there, unless it lies above, and the three projections are weighted as the corners are
+// (Hanika, "Hacking the Shadow Terminator", Ray Tracing Gems II, chapter 4, 2021). Corners whose plane p lies
+// above, as all in a hollow, lift nothing; seen from the back, normals are turned to that side. `geometric`
+// is the unit normal of the side that is seen.
+template <class F, class M>
+static inline Vec3T<F> lifted_position(const Facet<F, M>& f, const Vec3T<F>& p, const F& u, const F& v,
+                                       const NormalSum<F, M>& s, const Vec3T<F>& geometric) {
+  const F zero = F(0.0f);
+  const auto turned = dot(s.sum, geometric) < zero;
+  const Vec3T<F> from_a = p - f.a;
+  const Vec3T<F> from_corner[3] = {from_a, from_a - f.ab, from_a - f.ac};
+  const F weight[3] = {greatest((F(1.0f) - u) - v, zero), u, v};
+  Vec3T<F> lift{zero, zero, zero};
+  for (int k = 0; k < 3; ++k) {
+    const Vec3T<F> n = flip_where(turned, f.corner_normal[k]);
+    const F below = greatest(-dot(from_corner[k], n), zero);
+    const auto upwards = both(s.usable, dot(n, geometric) > zero);
+    lift = lift + n * select(upwards, below * weight[k], zero);
+  }
+  return p + lift;
 }
 
 }  // namespace vitral

@@ -1,6 +1,7 @@
 #include "kernels/sight.h"
 
 #include "kernels/meet.h"
+#include "kernels/ray_offset.h"
 
 namespace vitral {
 namespace VITRAL_ISA {
@@ -83,6 +84,16 @@ inline Uint columns_of(const Parts& parts, const Flat& shape, Float room) {
   return begins & ends;
 }
 
+// Does the triangle rise over the origins of the points' rays, by more than rounding can make of one that
+// does not? Triangles in the plane of a point's own, that one first of all, do not.
+inline Mask rises(const Corners3& t, const Vec3T<Float>& p, const Vec3T<Float>& geometric, Float offset) {
+  const Vec3T<Float> n = absolute(geometric), to[3] = {t.corner[0] - p, t.corner[1] - p, t.corner[2] - p};
+  const Float over = greatest_of(dot(geometric, to[0]), dot(geometric, to[1]), dot(geometric, to[2]));
+  const Vec3T<Float> away = greatest(absolute(to[0]), greatest(absolute(to[1]), absolute(to[2])));
+  const Float error = dot(n, absolute(p)) * Float(kUnitRoundoff) + plane_error(n, away);
+  return over > offset * Float(1 / kSecondOrder) - error * Float(kSecondOrder);
+}
+
 // How far a point is from a box, squared.
 inline Float distance_squared(const Vec3T<Float>& p, const Vec3& low, const Vec3& high) {
   const Float zero = Float(0.0f);
@@ -109,13 +120,19 @@ bool look_at(const Shape& shape, const Box& box, const Vec3& plane, const Block&
     const Vec3T<Float> geometric = load3(points.gx, points.gy, points.gz, g);
     const Float offset = load(points.offset + g);
     const Float over = highest_along(shape, geometric) - load(block.sights.geometric + g);
-    const Mask above = both(over > offset - margin, group_mask(points.live, g));
+    Mask above = both(over > offset - margin, group_mask(points.live, g));
     if (!any(above)) continue;
+    const Vec3T<Float> p = load3(points.px, points.py, points.pz, g),
+                       n = load3(points.nx, points.ny, points.nz, g);
+    if constexpr (std::is_same_v<Shape, Corners3>) {
+      if (any(both(above, over < offset + margin))) {
+        above = both(above, rises(shape, p, geometric, offset));
+        if (!any(above)) continue;
+      }
+    }
 
     // Seen from the ray's origin, `offset` above the point: its height is at most the highest coordinate at
     // the least distance, whose square rounding makes less than 2^-14 too large.
-    const Vec3T<Float> p = load3(points.px, points.py, points.pz, g),
-                       n = load3(points.nx, points.ny, points.nz, g);
     const Float give = offset + margin;
     const Float away = greatest(square_root(distance_squared(p, box.min, box.max)) - give, zero);
     const Mask near = both(above, away <= Float(distance * 1.00001f));

@@ -24,19 +24,24 @@ void store_nothing(int g, PointPacket& out) {
   store(out.offset + g, Float(0.0f));
 }
 
-// Sets the register's points but their keys; returns the lanes that see the back.
+// Sets the register's points but their keys, and with Lift::smooth where `lifted` has its
+// shadow rays start; returns the lanes that see the back.
 [[gnu::always_inline]] inline uint64_t store_points(const Facet<Float, Mask>& f, Float u, Float v,
                                                     const Vec3T<Float>& direction, Mask live,
-                                                    const OffsetRule& offset, int g, PointPacket& out) {
+                                                    const OffsetRule& offset, int g, PointPacket& out,
+                                                    SurfacePacket* lifted) {
   const Vec3T<Float> viewer = -normalize(direction);
   const Mask away = looks_away(f.normal, viewer);
   const Vec3T<Float> normal = flip_where(away, f.normal);
-  const Vec3T<Float> shading = interpolated_normal(normal_sum_at(f, u, v), normal);
-  store3(out.px, out.py, out.pz, g, position_at(f, u, v), live, 0);
+  const NormalSum<Float, Mask> sum = normal_sum_at(f, u, v);
+  const Vec3T<Float> shading = interpolated_normal(sum, normal), position = position_at(f, u, v);
+  store3(out.px, out.py, out.pz, g, position, live, 0);
   store3(out.gx, out.gy, out.gz, g, normal, live, 1);
   store3(out.nx, out.ny, out.nz, g, shading, live, 1);
   store3(out.vx, out.vy, out.vz, g, viewer, live, 1);
-  const Float own = offset.fixed > 0 ? Float(offset.fixed) : ray_offset(f.magnitude);
+  if (lifted != nullptr && offset.lift == Lift::smooth)
+    store3(lifted->lx, lifted->ly, lifted->lz, g, lifted_position(f, position, u, v, sum, normal), live, 0);
+  const Float own = offset.fixed > 0 ? Float(offset.fixed) : f.offset;
   store(out.offset + g, select(live, own, Float(0.0f)));
   return static_cast<uint64_t>(bits(both(away, live))) << g;
 }
@@ -90,7 +95,7 @@ uint64_t surface_points(const KdTriangle* triangles, const RayPacket& rays, cons
   for_each_hit(scene, rays, hits, out,
                [&](int g, Mask met, const Facet<Float, Mask>& facet, uint32_t) VITRAL_INLINED {
                  back |= store_points(facet, load(hits.u + g), load(hits.v + g),
-                                      load3(rays.dx, rays.dy, rays.dz, g), met, offset, g, out);
+                                      load3(rays.dx, rays.dy, rays.dz, g), met, offset, g, out, nullptr);
                });
   return back;
 }
@@ -100,8 +105,9 @@ void hit_surfaces(const SurfaceView& scene, const RayPacket& rays, const HitPack
   out.back = 0;
   for_each_hit(scene, rays, hits, out.points,
                [&](int g, Mask met, const Facet<Float, Mask>& facet, uint32_t number) VITRAL_INLINED {
-                 out.back |= store_points(facet, load(hits.u + g), load(hits.v + g),
-                                          load3(rays.dx, rays.dy, rays.dz, g), met, offset, g, out.points);
+                 out.back |=
+                     store_points(facet, load(hits.u + g), load(hits.v + g),
+                                  load3(rays.dx, rays.dy, rays.dz, g), met, offset, g, out.points, &out);
                  store(out.t + g, load(hits.t + g));
                  store_colors(scene, hits.triangle + g, number, bits(met), g, out);
                });
@@ -119,7 +125,7 @@ void visible_surfaces(const SurfaceView& scene, const Pinhole& camera, int x, in
         store(hits.t + g, point.t), store(hits.u + g, point.u), store(hits.v + g, point.v);
         store(out.t + g, point.t);
         out.points.live |= static_cast<uint64_t>(bits(seen)) << g;
-        out.back |= store_points(facet, point.u, point.v, direction, seen, offset, g, out.points);
+        out.back |= store_points(facet, point.u, point.v, direction, seen, offset, g, out.points, &out);
         store_colors(scene, numbers + g, number, bits(seen), g, out);
       });
 }

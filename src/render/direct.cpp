@@ -77,7 +77,7 @@ void add_packets(const FrameContext& frame, const Light& light, const SurfacePac
     SampledLight sampled;
     ColorPacket& visibility = sampled.visibility;
     if (has_size(light))
-      sample_light(frame, light, *surfaces[i], tally, sampled, work + i);
+      sample_light(frame, light, *surfaces[i], *points[i], tally, sampled, work + i);
     else
       light_visibility(frame, light, *points[i], shadows[i], tally, visibility, work + i);
     const PassTimer timer(tally, Pass::shade);
@@ -98,6 +98,9 @@ void light_surfaces(const FrameContext& frame, const SurfacePacket* const* surfa
   const bool report = frame.settings.compositing == Compositing::report;
   const PointPacket* points[kTileBlocks] = {};
   for (int i = 0; i < count; ++i) points[i] = &surfaces[i]->points;
+  const PointPacket* starts[kTileBlocks] = {};  // of shadow rays
+  std::vector<PointPacket> lifted;
+  find_shadow_starts(frame, surfaces, count, lifted, starts);
   FreeRays free_rays[kTileBlocks];
   LaneWork work[kTileBlocks];
   if (frame.count == Count::pixels) std::fill_n(work, count, LaneWork{});
@@ -118,7 +121,7 @@ void light_surfaces(const FrameContext& frame, const SurfacePacket* const* surfa
   }
 
   for (const Light& light : scene.lights)
-    add_packets(frame, light, surfaces, points, count, tally, out, darkening, work);
+    add_packets(frame, light, surfaces, starts, count, tally, out, darkening, work);
 
   for (int i = 0; i < count; ++i) {
     const SurfacePacket& s = *surfaces[i];

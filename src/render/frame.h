@@ -145,6 +145,11 @@ bool see_surfaces(const FrameContext& frame, const TileHits& tile, size_t i, int
 // paints red those that are not finite.
 void encode_row(Vec3* colors, size_t count, Rgb8* pixels, uint64_t& not_finite);
 
+// shadow.cpp: the points that shadow rays start from: the surfaces' own, or with Lift::smooth copies of them
+// in `lifted`, moved to where the smooth surface is.
+void find_shadow_starts(const FrameContext& frame, const SurfacePacket* const* surfaces, int count,
+                        std::vector<PointPacket>& lifted, const PointPacket** starts);
+
 // shadow.cpp: which of the points face a light without a size and are kept from it by something opaque, for
 // up to kTileBlocks packets that lie near each other; and then how much of it arrives at each point, per
 // colour channel: 1 lit (or facing away), 0 blocked, between for glass.

@@ -1,6 +1,8 @@
 #include "render/hit_triangles.h"
 
 #include "kdtree/shapes.h"
+#include "kernels/ray_offset.h"
+#include "kernels/shading.h"
 #include "math/footprint.h"
 #include "render/frame.h"
 
@@ -52,25 +54,29 @@ bool is_identity(const Affine& a) {
   return a.x == id.x && a.y == id.y && a.z == id.z && a.origin == id.origin;
 }
 
+// How far the lane's triangle may be from what the rays meet, axis by axis.
+Vec3 error_of(const PlacedObject& object, int lane, const HitTriangles& out) {
+  Vec3 m{0, 0, 0};
+  for (int k = 0; k < 3; ++k) m = greatest(m, absolute(corner(out, lane, k)));
+  const PreciseAffine& i = object.to_object;
+  const Affine inverse{to_float(i.x), to_float(i.y), to_float(i.z), to_float(i.origin)};
+  return placement_error(object.to_world, inverse, m);
+}
+
 void place_triangle(const PlacedObject& object, int lane, HitTriangles& out) {
   // An identity must not cost the normals a rounding.
   if (is_identity(object.to_world)) return;
   const PreciseAffine to_world = to_double(object.to_world);
-  float own = 0, placed = 0;
   for (int k = 0; k < 3; ++k) {
     const Vec3 p = corner(out, lane, k);
     const Vec3 there = to_float(transform_point(to_world, to_double(p)));
-    own = greatest(own, largest_component(p)), placed = greatest(placed, largest_component(there));
     set_corner(out, lane, k, there);
     Vec3& n = out.normals[3 * lane + k];
     if (out.normal_indices[3 * lane] != kNoIndex)
       n = to_float(normalize(transform_normal(object.to_object, to_double(n))));
   }
-  // A model far from its own origin, moved back, keeps the rounding that it has there.
-  const Affine& a = object.to_world;
-  const float growth =
-      greatest(largest_component(a.x), greatest(largest_component(a.y), largest_component(a.z)));
-  out.reach[lane] = greatest(placed, greatest(own * growth, largest_component(a.origin)));
+  const Vec3 n = facet_normal(corner(out, lane, 0), corner(out, lane, 1), corner(out, lane, 2));
+  out.more_offset[lane] = dot(absolute(n), error_of(object, lane, out));
   if (object.mirrored) swap_corners(lane, out);
 }
 
@@ -113,7 +119,10 @@ void place_shape(const PlacedObject& object, const Ray& ray, float t, int lane, 
   out.materials[lane] = object.material;
   out.triangles[lane].flags = object.flags;
   out.hits.u[lane] = out.hits.v[lane] = 0;
-  out.reach[lane] = greatest(far, largest_component(object.to_world.origin));
+  // The ray goes to the shape in double, and a root is taken there.
+  constexpr float kDoubleRoundoff = 0x1p-53f / kUnitRoundoff, kRoot = 8;
+  out.more_offset[lane] =
+      dot(absolute(out.normals[3 * lane]), error_of(object, lane, out)) * (kDoubleRoundoff * kRoot);
   if (object.mirrored) swap_corners(lane, out);
 }
 
@@ -130,7 +139,7 @@ void gather_hits(const FrameContext& frame, const RayPacket& rays, const HitPack
       continue;
     }
     out.hits.triangle[lane] = static_cast<uint32_t>(lane);
-    out.reach[lane] = 0;
+    out.more_offset[lane] = 0;
     if (!is_object(view, number)) {
       copy_triangle(frame.scene.mesh, a.triangles[number], number, lane, out);
       continue;
@@ -170,7 +179,8 @@ bool sees_back(const FrameContext& frame, const Ray& ray, const Hit& hit) {
 }
 
 SurfaceView view_of(const FrameContext& frame, const HitTriangles& hits) {
-  return {hits.triangles, hits.normal_indices, hits.normals, hits.materials, frame.accelerator.colors.data()};
+  return {hits.triangles,  hits.normal_indices, hits.normals, hits.materials, frame.accelerator.colors.data(),
+          hits.more_offset};
 }
 
 float curvature(const Vec3* corners, const Vec3* normals, const Vec3& geometric, const Vec3& shading) {

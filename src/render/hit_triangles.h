@@ -18,8 +18,8 @@ struct HitTriangles {
   uint32_t normal_indices[3 * kPacketSize];
   uint32_t materials[kPacketSize];
   CornerTexcoords texcoords[kPacketSize];
-  float reach[kPacketSize];  // the largest coordinate that went into the lane's hit
-  HitPacket hits;            // `triangle` is the lane
+  float more_offset[kPacketSize];  // kernels/ray_offset.h
+  HitPacket hits;                  // `triangle` is the lane
 };
 
 // Of the live rays that hit something.

@@ -99,7 +99,7 @@ int samples_of(const FrameContext& frame, const Light& light) {
 }
 
 void sample_light(const FrameContext& frame, const Light& light, const SurfacePacket& surfaces,
-                  PassTally& tally, SampledLight& out, LaneWork* work) {
+                  const PointPacket& starts, PassTally& tally, SampledLight& out, LaneWork* work) {
   const LightShape shape = shape_of(light);
   const LightDraw draw = draw_of(frame, light);
   const bool report = frame.settings.compositing == Compositing::report;
@@ -108,7 +108,7 @@ void sample_light(const FrameContext& frame, const Light& light, const SurfacePa
   Sample sample;
   ColorPacket visibility;
   for (uint32_t k = 0; k < draw.samples; ++k) {
-    take_sample(frame, shape, draw, k, surfaces.points, tally, sample, work);
+    take_sample(frame, shape, draw, k, starts, tally, sample, work);
     const ShadowAnswer& answer = sample.answer;
     if (answer.facing == 0) continue;
     ray_visibility(frame, sample.rays, answer, tally, visibility, work);

@@ -14,10 +14,10 @@ struct SampledLight {
   float blocked[kPacketSize];  // the share of those rays that nothing of it comes through
 };
 
-// Traces a shadow ray to every sample that a point faces. What arrives is summed up with its visibility; or,
-// for the report's compositing, without.
+// Traces a shadow ray from `starts` (find_shadow_starts) to every sample that a point faces. What arrives is
+// summed up with its visibility; or, for the report's compositing, without.
 void sample_light(const FrameContext& frame, const Light& light, const SurfacePacket& surfaces,
-                  PassTally& tally, SampledLight& out, LaneWork* work);
+                  const PointPacket& starts, PassTally& tally, SampledLight& out, LaneWork* work);
 
 // Only traces them. Returns the points that face the light and get nothing from it.
 uint64_t trace_samples(const FrameContext& frame, const Light& light, const PointPacket& points,

@@ -140,7 +140,7 @@ FrameContext make_context(const Scene& scene, const Accelerator& accelerator, co
                      accelerator,
                      choose_kernels(settings.isa),
                      make_pinhole(camera, settings.width, settings.height),
-                     {0},
+                     {0, settings.terminator == Terminator::smooth ? Lift::smooth : Lift::none},
                      kSampleStep,
                      nullptr,
                      0,

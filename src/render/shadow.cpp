@@ -72,8 +72,33 @@ void set_visibility(const ShadowAnswer& answer, ColorPacket& visibility) {
   for (uint64_t left = answer.blocked; left != 0; left &= left - 1)
     visibility.color[__builtin_ctzll(left)] = {0, 0, 0};
 }
+// A lifted point is rounded once more, at the size of its coordinates: a third of what its triangle's offset
+// holds ready for that (kernels/ray_offset.h, steps 1 and 2).
+constexpr float kLiftedOffset = 4.0f / 3;
 
 }  // namespace
+
+void find_shadow_starts(const FrameContext& frame, const SurfacePacket* const* surfaces, int count,
+                        std::vector<PointPacket>& lifted, const PointPacket** starts) {
+  if (frame.offset.lift == Lift::none || !frame.settings.effects.shadows) {
+    for (int i = 0; i < count; ++i) starts[i] = &surfaces[i]->points;
+    return;
+  }
+  lifted.resize(static_cast<size_t>(count));
+  for (int i = 0; i < count; ++i) {
+    const SurfacePacket& s = *surfaces[i];
+    PointPacket& p = lifted[static_cast<size_t>(i)];
+    p = s.points;
+    for (uint64_t left = p.live; left != 0; left &= left - 1) {
+      const int lane = __builtin_ctzll(left);
+      const Vec3 start = get(s.lx, s.ly, s.lz, lane);
+      if (start == get(p.px, p.py, p.pz, lane)) continue;
+      p.px[lane] = start.x, p.py[lane] = start.y, p.pz[lane] = start.z;
+      p.offset[lane] *= kLiftedOffset;
+    }
+    starts[i] = &p;
+  }
+}
 
 void find_shadows(const FrameContext& frame, const Light& light, const PointPacket* const* points, int count,
                   PassTally& tally, ShadowAnswer* out, LaneWork* work) {

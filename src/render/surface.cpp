@@ -84,8 +84,6 @@ void make_object_surfaces(const FrameContext& frame, const RayPacket& rays, cons
     out.triangle[lane] = hits.triangle[lane];
     out.turning[lane] = curvature(seen, lane, get(out.points.gx, out.points.gy, out.points.gz, lane),
                                   get(out.points.nx, out.points.ny, out.points.nz, lane));
-    if (!(frame.offset.fixed > 0))
-      out.points.offset[lane] = greatest(out.points.offset[lane], ray_offset(seen.reach[lane]));
   }
 }
 
