@@ -327,6 +327,33 @@ TEST(LightsWithASize, AreStratified) {
   }
 }
 
+// The samples of a light in all samples of a pixel are one set: 4 times 4 of them vary as 16 do, not as four
+// independent sets of 4, and have the same mean. The camera sees next to nothing, so that pixels are points.
+TEST(LightsWithASize, AreStratifiedOverTheSamplesOfAPixel) {
+  const Camera camera = camera_at({0, 0.6f, 0}, {0, -1, 0}, 0.01f, {0, 0, -1});
+  for (const Light& light : lights_with_a_size(1)) {
+    const Scene scene = floor_under(light);
+    const auto sum_of = [&](int frames, int samples) {
+      Settings s = picture(8, 8);
+      s.samples = frames, s.light_samples = samples;
+      return pictures(scene, s, 250, 0, camera);
+    };
+    const auto variance = [](const PictureSum& sum) {
+      double all = 0;
+      for (size_t i = 0; i < sum.sum.size(); i += 3) all += sum.variance(i);
+      return all;
+    };
+    const PictureSum four = sum_of(1, 4), sixteen = sum_of(1, 16), together = sum_of(4, 4),
+                     frames = sum_of(16, 1);
+    const std::string what = "kind " + std::to_string(static_cast<int>(light.kind));
+    EXPECT_LT(variance(sixteen), variance(four) / 4 * 0.5) << what;
+    EXPECT_LT(variance(together), 1.5 * variance(sixteen)) << what;
+    EXPECT_LT(variance(frames), 1.5 * variance(sixteen)) << what;
+    EXPECT_LT(greatest_z(together, sixteen), critical_z(64)) << what;
+    EXPECT_LT(greatest_z(frames, sixteen), critical_z(64)) << what;
+  }
+}
+
 TEST(LightsWithASize, SendEachPointAsManyRaysAsAsked) {
   for (const Light& light : lights_with_a_size(5)) {
     Scene scene = floor_under(light);
@@ -365,7 +392,7 @@ TEST(LightsWithASize, AreTintedByGlass) {
   const Camera camera = camera_at({0, 0.4f, 0}, {0, -1, 0}, 60, {0, 0, -1});
   const Settings s = picture(20, 20);
   Settings unshadowed = s;
-  unshadowed.effects = kNoEffects;
+  unshadowed.effects = only(&Effects::ambient_occlusion);  // there are trees
   for (const Light& light : lights_with_a_size(4)) {
     Scene scene = floor_under(light);
     const Frame open = render_scene(scene, camera, s);

@@ -118,7 +118,8 @@ TEST_F(Cli, WritesStatisticsAsJson) {
   const Finished done = run({"p.xml", "--stats", "-"});
   EXPECT_EQ(done.code, 0);
   for (const char* key :
-       {"\"triangles\": 1", "\"width\": 16", "\"peak_memory_bytes\"", "\"write\"", "\"passes\""}) {
+       {"\"triangles\": 1", "\"width\": 16", "\"peak_memory_bytes\"", "\"write\"", "\"passes\"",
+        "\"rays_saved\": 0"}) {
     EXPECT_NE(done.out.find(key), std::string::npos) << key << " in " << done.out;
   }
   EXPECT_EQ(run({"p.xml", "--stats", "s.json"}).code, 0);

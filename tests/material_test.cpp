@@ -233,6 +233,11 @@ TEST(Absorption, OfAPrismWithTotalReflection) {
     const float f = fresnel_exact(1, 1.5f);
     expect_near(pixel(frame, 8, 8), left_after(1) * ((1 - f) * (1 - f)), 1e-3f);
   }
+  // And 0.9 m to something 0.1 m above the lowest face, within the glass.
+  add_floor(scene, 1, 100, 0.1f);
+  const Frame frame =
+      render_scene(scene, camera_at({-1, 0.5f, 0}, {1, 0, 0}, 0.01f), small({false, false, true, false}));
+  expect_near(pixel(frame, 8, 8), left_after(0.9) * (1 - fresnel_exact(1, 1.5f)), 1e-3f);
 }
 
 // A floor that only the light through some glass reaches.
@@ -272,18 +277,21 @@ TEST(Absorption, EverySheetAndSolidOnTheWayColoursTheShadow) {
   expect_near(lit_through(scene, sun({0, -1, 0})), expected, 1e-4f);
 }
 
-TEST(Absorption, EndsAtALightInTheGlass) {
-  Scene scene;
-  Material m = glass(Optics::solid);
-  m.absorption = kAbsorption;
-  const uint32_t solid = add_material(scene, m);
-  add_floor(scene, solid, 500, 3);
-  add_ceiling(scene, solid, 500, 1);
-  Light lamp;
-  lamp.kind = Light::Kind::point;
-  lamp.position = {0, 2.5f, 0};
-  lamp.color = {3.5f * 3.5f, 3.5f * 3.5f, 3.5f * 3.5f};  // 1 on the floor
-  expect_near(lit_through(scene, lamp), left_after(1.5), 1e-4f);
+// Lights in the midst of the glass and above it, whose shadow rays are of any length.
+TEST(Absorption, IsThatOfTheWayToALightThatIsNear) {
+  for (const auto& [height, inside] : {std::pair{2.5f, 1.5}, std::pair{4.0f, 2.0}}) {
+    Scene scene;
+    Material m = glass(Optics::solid);
+    m.absorption = kAbsorption;
+    const uint32_t solid = add_material(scene, m);
+    add_floor(scene, solid, 500, 3);
+    add_ceiling(scene, solid, 500, 1);
+    Light lamp;
+    lamp.kind = Light::Kind::point;
+    lamp.position = {0, height, 0};
+    lamp.color = Vec3{1, 1, 1} * ((height + 1) * (height + 1));  // 1 on the floor
+    expect_near(lit_through(scene, lamp), left_after(inside), 1e-4f);
+  }
 }
 
 TEST(Emission, IsSeenWhateverTheLight) {

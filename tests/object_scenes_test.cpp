@@ -306,6 +306,48 @@ std::vector<Acne> acne_cases() {
 }
 INSTANTIATE_TEST_SUITE_P(All, NoShapeShadowsItself, testing::ValuesIn(acne_cases()));
 
+// A model far from its own origin, placed near the world's, keeps the rounding that it has there.
+TEST(ObjectScenes, DistantModelsDoNotShadowThemselves) {
+  Scene scene;
+  add_material(scene, matte({1, 1, 1}));
+  const float far = 3000;
+  add_model(scene, 0, sphere({far, far, far}, 1, 8));
+  scene.objects = {model_at(0, rotation({1, 2, 0}, 30) * translation({-far, -far, -far}))};
+  scene.lights = {sun({-1, -0.7f, -0.4f})};
+  Settings settings = traced(64, 64);
+  settings.effects.shadows = true;
+  settings.aovs = {"shadow", "geometric-normal"};
+  const Vec3 from{2, 4, 3};
+  const Frame frame = render_scene(scene, test::camera_at(from, -from, 30), settings);
+  EXPECT_GT(frame.stats.covered_pixels, 500u);
+  int dark = 0;
+  for (size_t i = 0; i < frame.aovs[0].pixels.pixels.size(); ++i) {
+    const float cosine = dot(frame.aovs[1].pixels.pixels[i], scene.lights[0].direction);
+    dark += frame.aovs[0].pixels.pixels[i].x != 1 && cosine < -0.05f;
+  }
+  EXPECT_EQ(dark, 0);
+}
+
+// A small ball far away has normals as good as a large one.
+TEST(ObjectScenes, NormalsOfASmallDistantBall) {
+  Scene scene;
+  add_material(scene, matte({1, 1, 1}));
+  const Vec3 middle{0, 500, 0};
+  scene.objects = {shape_at(Shape::sphere, 0, translation(middle) * scaling(0.05f, 0.05f, 0.05f))};
+  Settings settings = traced();
+  settings.aovs = {"normal", "geometric-normal"};
+  const Frame frame =
+      render_scene(scene, test::camera_at(middle + Vec3{0, 0, 0.25f}, {0, 0, -1}, 25), settings);
+  int seen = 0;
+  for (size_t i = 0; i < frame.aovs[0].pixels.pixels.size(); ++i) {
+    const Vec3 n = frame.aovs[0].pixels.pixels[i];
+    if (dot(n, n) == 0) continue;
+    EXPECT_LT(length(n - frame.aovs[1].pixels.pixels[i]), 1e-5f);
+    ++seen;
+  }
+  EXPECT_GT(seen, 300);
+}
+
 // Shading that is right: normals of an ellipsoid are its gradient's, texture coordinates land where they
 // must.
 TEST(ObjectScenes, NormalsOfAnEllipsoid) {

@@ -278,6 +278,55 @@ TEST_P(ObjectsOnEveryIsa, CountingChangesNoAnswer) {
 INSTANTIATE_TEST_SUITE_P(All, ObjectsOnEveryIsa, testing::ValuesIn(available_kernels()),
                          [](const auto& p) { return std::string(p.param->isa); });
 
+// Rays that graze the boxes, at the corners of objects that are thin, far from their own origin or squashed,
+// from far away: the tree must not lose one that testing all finds.
+TEST(Objects, NothingIsLostAtTheEdgesOfTheBoxes) {
+  Scene scene;
+  add_material(scene, {});
+  Scene pane;
+  add_quad(pane, 0, {-1, -1, 0}, {2, 0, 0}, {0, 2, 0});
+  Scene distant;
+  add_quad(distant, 0, {999, -1, 0}, {2, 0, 0}, {0, 2, 0});
+  scene.models = {pane.mesh, distant.mesh};
+  Random random(12);
+  std::vector<Vec3> corners;
+  for (uint32_t i = 0; i < 60; ++i) {
+    Affine placement = random_placement(random, i);
+    if (i % 4 == 0) placement = translation(random.in_box(-3, 3));
+    switch (i % 5) {
+      case 0:
+        scene.objects.push_back(model_at(0, placement));
+        break;
+      case 1:
+        scene.objects.push_back(model_at(1, placement * translation({-1000, 0, 0})));
+        break;
+      case 2:
+        scene.objects.push_back(shape_at(Shape::box, 0, placement));
+        break;
+      default:
+        scene.objects.push_back(shape_at(i % 5 == 3 ? Shape::disk : Shape::sphere, 0, placement));
+    }
+    const float flat = i % 5 < 2 ? 0.0f : 1.0f;
+    for (const float x : {-1.0f, 1.0f}) {
+      for (const float y : {-1.0f, 1.0f}) corners.push_back(transform_point(placement, Vec3{x, y, flat}));
+      corners.push_back(transform_point(placement, Vec3{x, 0, 0}));
+    }
+  }
+  const Built built(scene);
+  int met = 0;
+  for (int i = 0; i < 40000; ++i) {
+    const Vec3 target = corners[random.below(static_cast<uint32_t>(corners.size()))];
+    Vec3 direction = random.direction();
+    if (i % 3 == 0) direction = i % 2 ? Vec3{0, 0, 1} : Vec3{1, 0, 0};
+    const Vec3 origin = target - direction * (i % 4 == 0 ? 3.0f : 900.0f);
+    const Ray ray{origin, 0, target - origin, kInfinity};
+    const Hit all = brute_force(built, ray), one = one_ray(built, ray);
+    ASSERT_TRUE(same_bits(one, all)) << i << " " << one.triangle << " " << all.triangle;
+    met += all.triangle != kNoTriangle && absolute(all.t - 1) < 1e-3f;
+  }
+  EXPECT_GT(met, 5000);
+}
+
 // Only glass is seen: the same as when there were nothing else.
 TEST(Objects, GlassAlone) {
   const Scene scene = crowd(9, 60);

@@ -74,6 +74,8 @@ TEST(Options, ReadsEveryOptionOfRender) {
                                    "3.5",
                                    "--shutter",
                                    "-1,0.5",
+                                   "--background",
+                                   "0.5,1,2",
                                    "--sun",
                                    "1,-1,0",
                                    "--effects",
@@ -127,6 +129,7 @@ TEST(Options, ReadsEveryOptionOfRender) {
   EXPECT_EQ(o.shutter->open, -1);
   EXPECT_EQ(o.shutter->close, 0.5f);
   EXPECT_EQ(*o.sun, (Vec3{1, -1, 0}));
+  EXPECT_EQ(*o.background, (Vec3{0.5f, 1, 2}));
   EXPECT_TRUE(o.effects->shadows && o.effects->ambient_occlusion);
   EXPECT_FALSE(o.effects->reflection || o.effects->refraction);
   EXPECT_EQ(o.ao_samples, 25);
@@ -200,6 +203,7 @@ TEST(Options, RefusesValuesOutOfRange) {
       {"--focus", {"0", "-2"}},
       {"--shutter", {"1", "2,1", "0,1,2", "a,b", ""}},
       {"--sun", {"0,0,0"}},
+      {"--background", {"-1", "red", "1,2"}},
       {"--ao-samples", {"0", "2", "10", "1025", "1089", "-4", "4.0"}},
       {"--ao-distance", {"0", "-1"}},
       {"--ao-exponent", {"0", "-2"}},

@@ -156,6 +156,36 @@ TEST(Marble, FadesToItsMean) {
   }
 }
 
+// Without turbulence the veins are cos^8, and their mean over a span has a closed form that ours is near to.
+TEST(Marble, VeinsFadeWaveByWave) {
+  Pattern p = pattern(Pattern::Kind::marble);
+  p.turbulence = 0;
+  for (const float wide : {0.05f, 0.1f, 0.2f, 0.4f}) {
+    for (int i = 0; i < 20; ++i) {
+      PatternPlace place = point({0.025f * static_cast<float>(i), 3, 2});
+      place.first = {wide, 0, 0};
+      expect_near(pattern_color(p, place), mean_of_points(p, place, 60), 0.045f);
+    }
+  }
+}
+
+// The solid is the same from both sides of the surface that cuts it.
+TEST(Patterns, FromBehindTheSurfaceLooksTheSame) {
+  Scene scene;
+  Material m;
+  m.pattern = pattern(Pattern::Kind::checker);
+  add_quad(scene, add_material(scene, m), {-2, 0, -2}, {0, 0, 4}, {4, 0, 0});
+  scene.ambient = {1, 1, 1};
+  Settings s;
+  s.width = s.height = 9, s.threads = 1;
+  s.effects = kNoEffects;
+  const Frame above = render_scene(scene, camera_at({0.1f, 4, 0.1f}, {0, -1, 0}, 30, {0, 0, -1}), s);
+  const Frame below = render_scene(scene, camera_at({0.1f, -4, 0.1f}, {0, 1, 0}, 30, {0, 0, -1}), s);
+  for (int y = 0; y < 9; ++y) {
+    for (int x = 0; x < 9; ++x) EXPECT_NEAR(pixel(above, x, y).x, pixel(below, 8 - x, y).x, 0.01f);
+  }
+}
+
 // Seen from its edge a surface shows its mean, and nothing that is not finite.
 TEST(Patterns, AreFiniteWhateverIsSeen) {
   const float inf = std::numeric_limits<float>::infinity(), nan = std::numeric_limits<float>::quiet_NaN();
