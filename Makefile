@@ -56,9 +56,10 @@ KERNELS := $(foreach isa,$(ISAS),$(patsubst src/kernels/%.cpp,$(OUT)/obj/kernels
 LIBRARY := $(patsubst src/%.cpp,$(OUT)/obj/%.o,$(filter-out src/app/main.cpp src/kernels/%,$(wildcard src/*/*.cpp)))
 TESTS   := $(patsubst tests/%.cpp,$(OUT)/obj/tests/%.o,$(wildcard tests/*.cpp))
 PLAZA   := $(patsubst scenes/%.cpp,$(OUT)/obj/scenes/%.o,$(wildcard scenes/plaza/*.cpp))
+FOREST  := $(patsubst scenes/%.cpp,$(OUT)/obj/scenes/%.o,$(wildcard scenes/forest/*.cpp))
 
 .DEFAULT_GOAL := all
-.PHONY: all demo test golden figures check-isa bench install uninstall clean help plaza FORCE
+.PHONY: all demo test golden figures check-isa bench install uninstall clean help plaza forest FORCE
 .DELETE_ON_ERROR:
 
 all: $(OUT)/vitral out/plaza/plaza.obj
@@ -68,6 +69,7 @@ help:
 	@echo '  all        build out/<config>/vitral and generate the plaza (the default)'
 	@echo '  demo       render the plaza with all effects to out/final.png'
 	@echo '  plaza      generate the plaza: out/plaza/{plaza.obj,plaza.mtl,*.png}'
+	@echo '  forest     generate a forest of 10,000 trees, 10^8 triangles: out/forest/forest.xml'
 	@echo '  test       build and run all tests, unit and golden'
 	@echo '  golden     rewrite the golden images, then fail so that it cannot be left on'
 	@echo '  figures    render every project of scenes/ to out/figures'
@@ -136,6 +138,14 @@ out/plaza/plaza.obj: $(OUT)/plaza
 
 plaza: out/plaza/plaza.obj
 
+$(OUT)/forest: $(FOREST)
+	$(CXX) $(LDFLAGS_ALL) $^ -o $@
+
+out/forest/forest.xml: $(OUT)/forest
+	$(OUT)/forest out/forest/forest
+
+forest: out/forest/forest.xml
+
 demo: $(OUT)/vitral out/plaza/plaza.obj
 	$(OUT)/vitral scenes/SceneFinal.xml -o out/final.png
 
@@ -157,8 +167,8 @@ $(OUT)/obj/tests/%.o: tests/%.cpp $(OUT)/flags $(OUT)/gtest
 $(OUT)/tests: $(TESTS) $(LIBRARY) $(KERNELS)
 	$(CXX) $(LDFLAGS_ALL) $^ -lgtest -o $@
 
-test: $(OUT)/vitral $(OUT)/tests $(OUT)/plaza check-isa
-	VITRAL=$(OUT)/vitral PLAZA=$(OUT)/plaza $(OUT)/tests
+test: $(OUT)/vitral $(OUT)/tests $(OUT)/plaza $(OUT)/forest check-isa
+	VITRAL=$(OUT)/vitral PLAZA=$(OUT)/plaza FOREST=$(OUT)/forest $(OUT)/tests
 
 golden: $(OUT)/vitral $(OUT)/tests
 	VITRAL=$(OUT)/vitral VITRAL_GOLDEN=rewrite $(OUT)/tests --gtest_filter='Golden*'
@@ -176,4 +186,4 @@ clean:
 
 FORCE:
 
--include $(patsubst %.o,%.d,$(KERNELS) $(LIBRARY) $(TESTS) $(PLAZA) $(OUT)/obj/app/main.d)
+-include $(patsubst %.o,%.d,$(KERNELS) $(LIBRARY) $(TESTS) $(PLAZA) $(FOREST) $(OUT)/obj/app/main.d)

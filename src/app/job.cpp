@@ -5,6 +5,7 @@
 #include "io/mesh_file.h"
 #include "io/text.h"
 #include "render/kernel_choice.h"
+#include "render/tile.h"
 
 #include <sys/resource.h>
 #include <unistd.h>
@@ -99,6 +100,13 @@ void override_camera(const Options& options, Camera& camera) {
   if (!fault.empty()) throw UsageError("camera: " + fault);
 }
 
+// Where objects are rasterized, the triangle and the depth of every pixel.
+size_t object_bytes(const Settings& settings) {
+  const Tiles tiles = tiles_of(crop_of(settings));
+  const size_t count = static_cast<size_t>(tiles.across) * static_cast<size_t>(tiles.down);
+  return settings.primary == Primary::raster ? count * sizeof(TileVisibility) : 0;
+}
+
 void check_frame(const Job& job, const Options& options) {
   const Settings& settings = job.pipeline.settings;
   const Rectangle& crop = settings.crop;
@@ -106,7 +114,8 @@ void check_frame(const Job& job, const Options& options) {
     throw UsageError("--crop reaches out of the picture of " + std::to_string(settings.width) + "x" +
                      std::to_string(settings.height) + " pixels");
   }
-  const size_t needed = frame_bytes(settings), limit = memory_limit();
+  const size_t needed = frame_bytes(settings) + (job.project.object_count > 0 ? object_bytes(settings) : 0),
+               limit = memory_limit();
   if (needed <= limit) return;
   const std::string reason = std::to_string(settings.width) + "x" + std::to_string(settings.height) +
                              " pixels need " + std::to_string(needed >> 20) + " MiB, there are " +

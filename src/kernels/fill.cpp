@@ -12,6 +12,7 @@
 // "Hierarchical Z-Buffer Visibility", SIGGRAPH 1993). What many triangles cover together is not looked for:
 // measured, that costs more than it saves.
 #include "kdtree/kdtree.h"
+#include "kdtree/objects.h"
 #include "kernels/facet.h"
 #include "kernels/tables.h"
 #include "kernels/tile_cells.h"
@@ -27,7 +28,8 @@ namespace {
 // A triangle in the tile: how its edge functions and its inverse depth grow over the pixels of a cell.
 struct Filling {
   const SetupTriangle* triangle;
-  const CutOuts* cut_outs;  // null for a triangle without holes
+  const CutOuts* cut_outs;     // null for a triangle without holes
+  const PlacedObject* object;  // that it belongs to; null: the scene's own
   int32_t least_growth[3], greatest_growth[3];
   Int edge[3][kCellRegisters];
   Float across[kCellRegisters], down[kCellRegisters];
@@ -41,12 +43,24 @@ struct Window {
   alignas(64) float at_corner[16], least[16], greatest[16];
 };
 
+// The rule for the holes of a triangle; null where it has none.
+inline const CutOuts* cut_outs_of(const RasterView& view, const SetupTriangle& t,
+                                  const PlacedObject* object) {
+  if (object != nullptr) {
+    const KdView& model = view.placed->models[object->model].tree;
+    const bool is_cut_out = (model.triangles[t.triangle - object->first_number].flags & kCutOutTriangle) != 0;
+    return is_cut_out ? &model.cut_outs : nullptr;
+  }
+  const bool is_cut_out =
+      view.cut_outs != nullptr && (view.triangles[t.triangle].flags & kCutOutTriangle) != 0;
+  return is_cut_out ? view.cut_outs : nullptr;
+}
+
 Filling make_filling(const RasterView& view, const SetupTriangle& t) {
   Filling f;
   f.triangle = &t;
-  const bool is_cut_out =
-      view.cut_outs != nullptr && (view.triangles[t.triangle].flags & kCutOutTriangle) != 0;
-  f.cut_outs = is_cut_out ? view.cut_outs : nullptr;
+  f.object = view.placed != nullptr ? view.placed->objects + t.object : nullptr;
+  f.cut_outs = cut_outs_of(view, t, f.object);
   constexpr int32_t far_side = kCellSide - 1;
   for (int k = 0; k < 3; ++k) {
     const int next = k == 2 ? 0 : k + 1;
@@ -113,19 +127,21 @@ CellMasks classify(const Filling& f, const int32_t at_corner[3], int x, int y, W
 // Clears the pixels where a cut-out triangle is not there; the cell's corner is (x, y).
 [[gnu::noinline]] uint32_t keep_there(const RasterView& view, const Filling& f, int x, int y, int first,
                                       uint32_t pixels) {
-  const uint32_t number = f.triangle->triangle;
-  const KdTriangle& triangle = view.triangles[number];
+  const Eye eye = eye_of(*view.camera, f.object);
+  const uint32_t number = f.triangle->triangle - (f.object != nullptr ? f.object->first_number : 0);
+  const KdTriangle* triangles =
+      f.object != nullptr ? view.placed->models[f.object->model].tree.triangles : view.triangles;
+  const KdTriangle& triangle = triangles[number];
   Vec3T<Float> corner[3];
-  for (int k = 0; k < 3; ++k) corner[k] = broadcast(corner_from(view.camera->origin, triangle, k));
+  for (int k = 0; k < 3; ++k) corner[k] = broadcast(corner_from(eye.origin, triangle, k));
   const Float px = to_float(Int(x) + load(kLaneX + first)), py = to_float(Int(y) + load(kLaneY + first));
-  const auto hit = meet_from_eye(corner, primary_direction(*view.camera, px, py));
+  const auto hit = meet_from_eye(corner, direction_from(eye, px, py));
   alignas(64) float u[kLanes], v[kLanes];
   store(u, hit.u), store(v, hit.v);
   for (uint32_t left = pixels; left != 0; left &= left - 1) {
     const int lane = __builtin_ctz(left);
     if (!(bits(hit.hit) >> lane & 1u)) {
-      const auto point =
-          visible_point(*view.camera, triangle, x + kLaneX[first + lane], y + kLaneY[first + lane]);
+      const auto point = visible_point(eye, triangle, x + kLaneX[first + lane], y + kLaneY[first + lane]);
       u[lane] = point.u, v[lane] = point.v;
     }
     if (!f.cut_outs->is_there(f.cut_outs->scene, number, u[lane], v[lane])) pixels &= ~(1u << lane);
@@ -267,26 +283,30 @@ void fill_runs(const RasterView& view, uint32_t bin, TileVisibility& seen) {
   }
 }
 
+// All triangles of the view.
+void fill_all(const RasterView& view, int tile_x, int tile_y, Tile& tile, TileVisibility& out) {
+  for (int level = kBinLevels - 1; level >= 0; --level)
+    fill_bin(view, bin_of(view.grid, level, tile_x, tile_y), tile);
+  hand_over(tile, out);
+  fill_runs(view, bin_of(view.grid, 0, tile_x, tile_y), out);
+}
+
 }  // namespace
 
 void fill_tile(const RasterView& view, int tile_x, int tile_y, TileVisibility& out) {
   Tile tile;
-  tile.x = tile_x * kTileSide;
-  tile.y = tile_y * kTileSide;
-  const PixelBox& w = view.window;
-  tile.window = intersection({w.x0 - tile.x, w.y0 - tile.y, w.x1 - tile.x, w.y1 - tile.y},
-                             {0, 0, kTileSide, kTileSide});
+  set_place(view, tile_x, tile_y, tile);
   clear(view, tile);
   mask_unwanted(tile);
-  for (int level = kBinLevels - 1; level >= 0; --level) {
-    const int shift = level * kBinLevelShift;
-    const uint32_t bin =
-        view.grid.first_bin[level] +
-        static_cast<uint32_t>((tile_y >> shift) * view.grid.across[level] + (tile_x >> shift));
-    fill_bin(view, bin, tile);
-  }
-  hand_over(tile, out);
-  fill_runs(view, static_cast<uint32_t>(tile_y * view.grid.across[0] + tile_x), out);
+  fill_all(view, tile_x, tile_y, tile, out);
+}
+
+void fill_over(const RasterView& view, int tile_x, int tile_y, TileVisibility& seen) {
+  Tile tile;
+  set_place(view, tile_x, tile_y, tile);
+  take_over(view, seen, tile);
+  mask_unwanted(tile);
+  fill_all(view, tile_x, tile_y, tile, seen);
 }
 
 }  // namespace VITRAL_ISA

@@ -81,8 +81,17 @@ struct Kernels {
   FrontEnd front_end;
 
   // The nearest triangle at every pixel of the tile in that column and row, which must touch the view's
-  // window.
-  void (*fill_tile)(const RasterView& view, int tile_x, int tile_y, TileVisibility& out);
+  // window; and the same together with what the tile shows already, from views of the same frame.
+  FillKernel fill_tile, fill_over;
+
+  // Where the camera rays through the block whose corner is (x, y) meet those of the 64 triangles that are
+  // objects', as intersect_visible finds it for the scene's own: sets the hits of these lanes alone.
+  void (*intersect_placed)(const ObjectsView& view, const Pinhole& camera, int x, int y,
+                           const uint32_t* numbers, HitPacket& hits);
+
+  // The hits hold what the live rays met so far; where the shape, an object's number, is closer, they become
+  // its.
+  void (*closest_shape)(const ObjectsView& view, uint32_t shape, const RayPacket& rays, HitPacket& hits);
 
   // Where the camera rays through the block whose corner is (x, y) meet the 64 triangles that
   // fill_tile found there: t is the depth, t, u and v are the tracer's where the ray hits. Pixels
@@ -102,6 +111,10 @@ struct Kernels {
                      const TileVisibility& tile, uint32_t wanted, FullBlock* out);
   void (*write_min)(const SurfaceView& scene, const Pinhole& camera, int x, int y, const TileVisibility& tile,
                     uint32_t wanted, MinBlock* out);
+
+  // The same of a block whose surfaces are known, a hit with a number for a triangle.
+  void (*pack_full)(const SurfacePacket& surfaces, const FlatColor* colors, FullBlock& out);
+  void (*pack_min)(const SurfacePacket& surfaces, MinBlock& out);
 
   // trace_closest, closest_blocks, trace_any, trace_shadows and ambient_blocks, with the same answers, which
   // also add up what they do.

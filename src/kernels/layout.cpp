@@ -123,5 +123,32 @@ void write_min(const SurfaceView& scene, const Pinhole& camera, int x, int y, co
                  [&](int i, const SeenBlock& block) { write_block(block, out[i]); });
 }
 
+void pack_full(const SurfacePacket& surfaces, const FlatColor* colors, FullBlock& out) {
+  const PointPacket& p = surfaces.points;
+  const Vec3T<Float> zero = broadcast(Vec3{0, 0, 0});
+  for (int g = 0; g < kPacketSize; g += kLanes) {
+    const Mask live = mask_of_bits(p.live >> g);
+    store(out.depth + g, select(live, load(surfaces.t + g), Float(0.0f)));
+    store3(out.px, out.py, out.pz, g, select3(live, load3(p.px, p.py, p.pz, g), zero));
+    store3(out.nx, out.ny, out.nz, g, select3(live, load3(p.nx, p.ny, p.nz, g), zero));
+    store(out.material + g, select(live, load(surfaces.material + g), Uint(kNoMaterial)));
+    store(out.triangle + g, select(live, load(surfaces.triangle + g), Uint(kNoTriangle)));
+  }
+  for (int lane = 0; lane < kPacketSize; ++lane)
+    out.albedo[lane] = p.live >> lane & 1 ? colors[surfaces.material[lane]].rgba8 : 0;
+}
+
+void pack_min(const SurfacePacket& surfaces, MinBlock& out) {
+  const PointPacket& p = surfaces.points;
+  for (int g = 0; g < kPacketSize; g += kLanes) {
+    const Mask live = mask_of_bits(p.live >> g);
+    store(out.depth + g, select(live, load(surfaces.t + g), Float(0.0f)));
+    store(out.normal + g, select(live, octahedral_normal(load3(p.nx, p.ny, p.nz, g)), Uint(0u)));
+  }
+  for (int lane = 0; lane < kPacketSize; ++lane) {
+    out.material[lane] = p.live >> lane & 1 ? static_cast<uint16_t>(surfaces.material[lane]) : kNoMinMaterial;
+  }
+}
+
 }  // namespace VITRAL_ISA
 }  // namespace vitral

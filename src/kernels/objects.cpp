@@ -279,6 +279,12 @@ void closest_objects(const ObjectsView& view, const RayPacket& rays, HitPacket& 
   walk_objects<Query::closest>(view, rays, GlassRule::blocks, &hits, NoCounts{});
 }
 
+void closest_shape(const ObjectsView& view, uint32_t shape, const RayPacket& rays, HitPacket& hits) {
+  BoxRays d;
+  derive_boxes(view, rays, d);
+  meet_shape<Query::closest>(view, shape, rays, d.traceable, &hits);
+}
+
 uint64_t any_objects(const ObjectsView& view, const RayPacket& rays, GlassRule glass) {
   return walk_objects<Query::any>(view, rays, glass, nullptr, NoCounts{});
 }

@@ -39,6 +39,10 @@ void count_ambient(const KdView& tree, const PointPacket* const* points, int cou
 void project_vertices(const Projection& projection, const Vec3* positions, size_t count, ScreenVertex* out);
 void setup_triangles(const SetupInput& in, uint32_t begin, uint32_t end, SetupOutput& out);
 void fill_tile(const RasterView& view, int tile_x, int tile_y, TileVisibility& out);
+void fill_over(const RasterView& view, int tile_x, int tile_y, TileVisibility& seen);
+void intersect_placed(const ObjectsView& view, const Pinhole& camera, int x, int y, const uint32_t* numbers,
+                      HitPacket& hits);
+void closest_shape(const ObjectsView& view, uint32_t shape, const RayPacket& rays, HitPacket& hits);
 void intersect_visible(const Pinhole& camera, const KdTriangle* triangles, int x, int y,
                        const uint32_t* numbers, HitPacket& hits);
 void visible_surfaces(const SurfaceView& scene, const Pinhole& camera, int x, int y, const uint32_t* numbers,
@@ -47,6 +51,8 @@ void write_full(const SurfaceView& scene, const Pinhole& camera, int x, int y, c
                 uint32_t wanted, FullBlock* out);
 void write_min(const SurfaceView& scene, const Pinhole& camera, int x, int y, const TileVisibility& tile,
                uint32_t wanted, MinBlock* out);
+void pack_full(const SurfacePacket& surfaces, const FlatColor* colors, FullBlock& out);
+void pack_min(const SurfacePacket& surfaces, MinBlock& out);
 void closest_objects(const ObjectsView& view, const RayPacket& rays, HitPacket& hits);
 uint64_t any_objects(const ObjectsView& view, const RayPacket& rays, GlassRule glass);
 void ambient_objects(const KdView& tree, const ObjectsView& view, const PointPacket& points,

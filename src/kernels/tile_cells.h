@@ -31,6 +31,14 @@ struct Tile {
   PixelBox window;  // pixels of the tile that are wanted, relative to the corner
 };
 
+static inline void set_place(const RasterView& view, int tile_x, int tile_y, Tile& tile) {
+  tile.x = tile_x * kTileSide;
+  tile.y = tile_y * kTileSide;
+  const PixelBox& w = view.window;
+  tile.window = intersection({w.x0 - tile.x, w.y0 - tile.y, w.x1 - tile.x, w.y1 - tile.y},
+                             {0, 0, kTileSide, kTileSide});
+}
+
 static inline void clear(const RasterView& view, Tile& tile) {
   for (int i = 0; i < kTileCells * kCellPixels; i += kLanes) {
     store(tile.inverse_depth + i, Float(view.least_inverse_depth));
@@ -61,23 +69,49 @@ static inline void update_least_of_all(Tile& tile) {
   tile.least_of_all_is_old = false;
 }
 
-// From cells to blocks, four pixels of a row at a time.
+// Calls body(pixel of the cells, pixel of the blocks) for every row of a cell, or for every pixel where a
+// register holds just one.
+inline constexpr int kRowLanes = kLanes < 4 ? kLanes : 4;
+template <class Body>
+static inline void for_each_row(int first, const Body& body) {
+  for (int i = 0; i < kLanes; i += kRowLanes) {
+    const int cell = (first + i) / kCellPixels, pixel = (first + i) % kCellPixels;
+    const int x = cell % kTileCellsAcross * kCellSide + pixel % kCellSide;
+    const int y = cell / kTileCellsAcross * kCellSide + pixel / kCellSide;
+    const int block = y / kBlockSide * kTileBlocksAcross + x / kBlockSide;
+    body(i, block * kPacketSize + y % kBlockSide * kBlockSide + x % kBlockSide);
+  }
+}
+
+// From cells to blocks.
 static inline void hand_over(const Tile& tile, TileVisibility& out) {
   for (int g = 0; g < kTileCells * kCellPixels; g += kLanes) {
     const Mask nothing = load(tile.triangle + g) == Uint(kNoTriangle);
     alignas(64) float depth[kLanes];
     store(depth, select(nothing, Float(0.0f), load(tile.inverse_depth + g)));
-    for (int i = 0; i < kLanes; i += kLanes < 4 ? kLanes : 4) {
-      const int cell = (g + i) / kCellPixels, pixel = (g + i) % kCellPixels;
-      const int x = cell % kTileCellsAcross * kCellSide + pixel % kCellSide;
-      const int y = cell / kTileCellsAcross * kCellSide + pixel / kCellSide;
-      const int block = y / kBlockSide * kTileBlocksAcross + x / kBlockSide;
-      const int to = block * kPacketSize + y % kBlockSide * kBlockSide + x % kBlockSide;
-      constexpr size_t bytes = 4 * (kLanes < 4 ? kLanes : 4);
-      __builtin_memcpy(out.inverse_depth + to, depth + i, bytes);
-      __builtin_memcpy(out.triangle + to, tile.triangle + g + i, bytes);
-    }
+    for_each_row(g, [&](int i, int to) {
+      __builtin_memcpy(out.inverse_depth + to, depth + i, sizeof(float) * kRowLanes);
+      __builtin_memcpy(out.triangle + to, tile.triangle + g + i, sizeof(uint32_t) * kRowLanes);
+    });
   }
+}
+
+// From blocks back to cells, and how far each cell's farthest pixel is.
+static inline void take_over(const RasterView& view, const TileVisibility& seen, Tile& tile) {
+  for (int g = 0; g < kTileCells * kCellPixels; g += kLanes) {
+    for_each_row(g, [&](int i, int from) {
+      __builtin_memcpy(tile.inverse_depth + g + i, seen.inverse_depth + from, sizeof(float) * kRowLanes);
+      __builtin_memcpy(tile.triangle + g + i, seen.triangle + from, sizeof(uint32_t) * kRowLanes);
+    });
+    // What is seen is nearer than far, or as near.
+    store(tile.inverse_depth + g, greatest(load(tile.inverse_depth + g), Float(view.least_inverse_depth)));
+  }
+  for (int cell = 0; cell < kTileCells; ++cell) {
+    tile.least[cell] = tile.inverse_depth[cell * kCellPixels];
+    for (int i = 1; i < kCellPixels; ++i)
+      tile.least[cell] = vitral::least(tile.inverse_depth[cell * kCellPixels + i], tile.least[cell]);
+  }
+  update_least_of_all(tile);
 }
 
 }  // namespace VITRAL_ISA

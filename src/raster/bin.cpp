@@ -85,4 +85,27 @@ void merge_bins(const BinGrid& grid, const std::vector<SetupChunk>& chunks, cons
   sort_by_bin(grid.first_bin[1], chunks, &SetupChunk::runs, run, for_each, bins.runs);
 }
 
+void bin_triangles(const ForEach& for_each, BinnedTriangles& binned) {
+  binned.chunk_triangles.clear();
+  for (const SetupChunk& chunk : binned.chunks) binned.chunk_triangles.push_back(chunk.triangles.data());
+  merge_bins(binned.grid, binned.chunks, for_each, binned.bins);
+}
+
+RasterView make_view(const BinnedTriangles& binned, const Projection& projection, const Pinhole& camera,
+                     const KdTriangle* triangles, const CutOuts* cut_outs) {
+  return {binned.chunk_triangles.data(),
+          binned.bins.references.items.data(),
+          binned.bins.references.first.data(),
+          binned.bins.runs.items.data(),
+          binned.bins.runs.first.data(),
+          binned.grid,
+          projection.window,
+          projection.least_inverse_depth,
+          &camera,
+          triangles,
+          cut_outs,
+          nullptr,
+          nullptr};
+}
+
 }  // namespace vitral

@@ -36,4 +36,18 @@ struct Bins {
 void merge_bins(const BinGrid& grid, const std::vector<SetupChunk>& chunks, const ForEach& for_each,
                 Bins& bins);
 
+// Triangles that are set up and sorted; kept from use to use, so that the memory is.
+struct BinnedTriangles {
+  BinGrid grid;
+  std::vector<SetupChunk> chunks;
+  std::vector<const SetupTriangle*> chunk_triangles;
+  Bins bins;
+};
+void bin_triangles(const ForEach& for_each, BinnedTriangles& binned);
+
+// What the fill kernel is given. Everything pointed to must outlive it. `triangles` has one entry for each
+// triangle; it and `cut_outs` matter only to cut-outs and may be null.
+RasterView make_view(const BinnedTriangles& binned, const Projection& projection, const Pinhole& camera,
+                     const KdTriangle* triangles, const CutOuts* cut_outs);
+
 }  // namespace vitral

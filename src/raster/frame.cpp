@@ -20,32 +20,22 @@ void transform_vertices(ProjectKernel kernel, const Pinhole& camera, int width, 
 
 void setup_triangles(SetupKernel kernel, const Mesh& mesh, const KdTriangle* flags_of,
                      const ForEach& for_each, RasterFrame& frame) {
-  const SetupInput in{frame.projection, frame.vertices.data(), mesh.positions.data(),
-                      mesh.triangles.empty() ? nullptr : mesh.triangles.front().data(), flags_of};
+  const SetupInput in{frame.projection,
+                      frame.vertices.data(),
+                      mesh.positions.data(),
+                      mesh.triangles.empty() ? nullptr : mesh.triangles.front().data(),
+                      flags_of,
+                      0,
+                      0};
   frame.chunks.resize(chunk_count(mesh.triangles.size()));
-  for_each(frame.chunks.size(),
-           [&](size_t chunk) { setup_chunk(kernel, in, frame.grid, mesh, chunk, frame.chunks[chunk]); });
-}
-
-void bin_triangles(const ForEach& for_each, RasterFrame& frame) {
-  frame.chunk_triangles.clear();
-  for (const SetupChunk& chunk : frame.chunks) frame.chunk_triangles.push_back(chunk.triangles.data());
-  merge_bins(frame.grid, frame.chunks, for_each, frame.bins);
+  for_each(frame.chunks.size(), [&](size_t chunk) {
+    setup_chunk(kernel, in, frame.grid, mesh.triangles.size(), chunk, frame.chunks[chunk]);
+  });
 }
 
 RasterView make_view(const RasterFrame& frame, const Pinhole& camera, const KdTriangle* triangles,
                      const CutOuts* cut_outs) {
-  return {frame.chunk_triangles.data(),
-          frame.bins.references.items.data(),
-          frame.bins.references.first.data(),
-          frame.bins.runs.items.data(),
-          frame.bins.runs.first.data(),
-          frame.grid,
-          frame.projection.window,
-          frame.projection.least_inverse_depth,
-          &camera,
-          triangles,
-          cut_outs};
+  return make_view(frame, frame.projection, camera, triangles, cut_outs);
 }
 
 }  // namespace vitral

@@ -1,6 +1,7 @@
 // The whole frame's part of rasterization, before tiles go their own ways.
 #pragma once
 #include "raster/bin.h"
+#include "raster/drawn.h"
 #include "raster/raster.h"
 #include "raster/setup.h"
 
@@ -8,14 +9,11 @@
 
 namespace vitral {
 
-// Kept from frame to frame, so that the memory is.
-struct RasterFrame {
+// Kept from frame to frame, so that the memory is. What is binned are the scene's own triangles.
+struct RasterFrame : BinnedTriangles {
   Projection projection;
-  BinGrid grid;
   std::vector<ScreenVertex> vertices;
-  std::vector<SetupChunk> chunks;
-  std::vector<const SetupTriangle*> chunk_triangles;
-  Bins bins;
+  DrawnObjects objects;
 };
 
 // The three stages of setting a frame up, in this order: the vertices on the screen, the triangles ready to
@@ -25,7 +23,7 @@ void transform_vertices(ProjectKernel kernel, const Pinhole& camera, int width, 
                         const Rectangle& crop, const Mesh& mesh, const ForEach& for_each, RasterFrame& frame);
 void setup_triangles(SetupKernel kernel, const Mesh& mesh, const KdTriangle* flags_of,
                      const ForEach& for_each, RasterFrame& frame);
-void bin_triangles(const ForEach& for_each, RasterFrame& frame);
+void bin_triangles(const ForEach& for_each, BinnedTriangles& binned);
 
 // What the fill kernel is given. Everything pointed to must outlive it, and the frame stay as it is.
 // `triangles` has one entry for each triangle of the mesh; it and `cut_outs` matter only to cut-outs

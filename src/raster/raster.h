@@ -5,8 +5,8 @@
 // How to read this folder: this file (what the stages hand to each other), project.h (points to pixels,
 // triangles to planes), setup.cpp (which triangle goes which way), clip.cpp, bin.cpp, coverage.h (the
 // fill rule), then kernels/setup.cpp, where most triangles are set up and those of a few pixels are
-// done with, and kernels/fill.cpp, which fills one tile. The stages are those of Laine and Karras,
-// "High-Performance Software Rasterization on GPUs", HPG 2011.
+// done with, kernels/fill.cpp, which fills one tile, and drawn.h, for objects. The stages are those of
+// Laine and Karras, "High-Performance Software Rasterization on GPUs", HPG 2011.
 //
 // Screen coordinates: pixel (x, y) has its centre at (x + 0.5, y + 0.5), y down. Vertices are snapped
 // to 1/256 pixel; from there on coverage is integer arithmetic and exact. Depth is kept as its
@@ -23,6 +23,8 @@ namespace vitral {
 
 struct KdTriangle;  // kdtree/kdtree.h
 struct CutOuts;
+struct ObjectsView;   // kdtree/objects.h
+struct DrawnObjects;  // raster/drawn.h
 
 inline constexpr int kSubpixelBits = 8;
 inline constexpr int kSubpixels = 1 << kSubpixelBits;
@@ -68,8 +70,9 @@ struct ScreenVertex {
 // belongs to the true triangle, not the snapped one, and the range is that of its visible corners.
 struct alignas(64) SetupTriangle {
   int32_t x[3], y[3];         // 1/256 pixel
-  uint32_t triangle;          // number in Mesh::triangles; parts of a clipped triangle share it
+  uint32_t triangle;          // its number; parts of a clipped triangle share it
   float least, greatest;      // inverse depth
+  uint32_t object;            // in RasterView::placed, where there are any
   double across, down, at_0;  // inverse depth = across * x + down * y + at_0
 };
 static_assert(sizeof(SetupTriangle) == 64);
@@ -80,16 +83,19 @@ inline constexpr int kSmallSide = 4;
 struct Fragment {
   int32_t x_y;  // pixel: x in the lower half, y in the upper one
   float inverse_depth;
-  uint32_t triangle;  // number in Mesh::triangles
+  uint32_t triangle;  // its number
 };
 
-// What kernels/setup.cpp reads.
+// A mesh on the screen, as setup reads it. Its triangles are numbered from first_number on in all that comes
+// out of setup; kernels/setup.cpp counts from 0.
 struct SetupInput {
   Projection projection;
   const ScreenVertex* vertices;
   const Vec3* positions;
   const uint32_t* corners;     // into both, three per triangle
-  const KdTriangle* flags_of;  // by triangle number; null where no triangle is a cut-out
+  const KdTriangle* flags_of;  // of each triangle; null where none is a cut-out
+  uint32_t first_number = 0;
+  uint32_t object = 0;  // for SetupTriangle::object
 };
 
 // Triangles are set up in chunks of this many.
@@ -126,6 +132,12 @@ struct BinGrid {
   uint32_t first_bin[kBinLevels];  // number of the level's bin (0, 0)
   uint32_t bins;                   // of all levels
 };
+// The bin of a level that a tile lies in.
+static inline uint32_t bin_of(const BinGrid& grid, int level, int tile_x, int tile_y) {
+  const int shift = level * kBinLevelShift;
+  return grid.first_bin[level] +
+         static_cast<uint32_t>((tile_y >> shift) * grid.across[level] + (tile_x >> shift));
+}
 
 // Names a setup triangle: its chunk in the upper bits, its place there in the lower ones.
 using SetupReference = uint32_t;
@@ -150,6 +162,8 @@ struct RasterView {
   const Pinhole* camera;
   const KdTriangle* triangles;  // by triangle number
   const CutOuts* cut_outs;      // null: no triangle is a cut-out
+  const ObjectsView* placed;  // whose triangles these are; null: the scene's own, of which the two above tell
+  const DrawnObjects* drawn;  // what is filled already, objects and the scene's own triangles; null: nothing
 };
 
 // What a tile of 32x32 pixels sees, in blocks of 64 pixels, row by row inside and among blocks.
@@ -157,5 +171,8 @@ struct alignas(64) TileVisibility {
   float inverse_depth[kTileBlocks * 64];  // 0: nothing
   uint32_t triangle[kTileBlocks * 64];    // kNoTriangle: nothing
 };
+
+// Fills a tile of the view: what its triangles look like alone, or together with what the tile shows already.
+using FillKernel = void (*)(const RasterView& view, int tile_x, int tile_y, TileVisibility& tile);
 
 }  // namespace vitral

@@ -42,16 +42,21 @@ SnappedPolygon clip_and_snap(const Projection& projection, const ClipVertex tria
   return result;
 }
 
+void project_corners(const SetupInput& in, uint32_t number, Vec3d corner[3]) {
+  for (size_t k = 0; k < 3; ++k)
+    corner[k] = project(in.projection, to_double(in.positions[in.corners[size_t{3} * number + k]]));
+}
+
 // Polygon to triangles around its first corner. All have the plane of the whole.
-void emit(const Projection& projection, const BinGrid& grid, const Mesh& mesh, uint32_t number,
-          const SnappedPolygon& polygon, SetupChunk& out) {
-  if (!(polygon.greatest >= projection.least_inverse_depth)) return;
+void emit(const SetupInput& in, const BinGrid& grid, uint32_t number, const SnappedPolygon& polygon,
+          SetupChunk& out) {
+  if (!(polygon.greatest >= in.projection.least_inverse_depth)) return;
   SetupTriangle t;
   bool has_plane = false;
   for (int i = 1; i + 1 < polygon.corners; ++i) {
     const int order[3] = {0, i, i + 1};
     for (int k = 0; k < 3; ++k) t.x[k] = polygon.x[order[k]], t.y[k] = polygon.y[order[k]];
-    const PixelBox box = intersection(centers_within(t.x, t.y), projection.window);
+    const PixelBox box = intersection(centers_within(t.x, t.y), in.projection.window);
     if (is_empty(box)) continue;
     const int64_t area = doubled_area<int64_t>(t.x, t.y);
     if (area == 0) continue;
@@ -64,12 +69,12 @@ void emit(const Projection& projection, const BinGrid& grid, const Mesh& mesh, u
     const bool one_pixel = box.x1 - box.x0 == 1 && box.y1 - box.y0 == 1;
     if (one_pixel && !covers(t.x, t.y, box.x0, box.y0)) continue;
     if (!has_plane) {
-      const Corners& c = mesh.triangles[number];
       Vec3d corner[3];
-      for (size_t k = 0; k < 3; ++k) corner[k] = project(projection, to_double(mesh.positions[c[k]]));
+      project_corners(in, number, corner);
       const InverseDepth<double> plane =
           inverse_depth_plane(corner[0], corner[1], corner[2], widen(polygon.least));
-      t.triangle = number;
+      t.triangle = in.first_number + number;
+      t.object = in.object;
       t.least = polygon.least;
       t.greatest = polygon.greatest;
       t.across = plane.across, t.down = plane.down, t.at_0 = plane.at_0;
@@ -112,9 +117,8 @@ Projection make_projection(const Pinhole& camera, int width, int height, const R
 namespace {
 
 // A triangle that the kernel left to us.
-void setup_other(const SetupInput& in, const BinGrid& grid, const Mesh& mesh, uint32_t number,
-                 SetupChunk& out) {
-  const Corners& c = mesh.triangles[number];
+void setup_other(const SetupInput& in, const BinGrid& grid, uint32_t number, SetupChunk& out) {
+  const uint32_t* c = in.corners + size_t{3} * number;
   const ScreenVertex &v0 = in.vertices[c[0]], &v1 = in.vertices[c[1]], &v2 = in.vertices[c[2]];
   SnappedPolygon polygon{};
   if ((v0.outside | v1.outside | v2.outside) == 0) {
@@ -122,25 +126,29 @@ void setup_other(const SetupInput& in, const BinGrid& grid, const Mesh& mesh, ui
       add_corner(snapped(v->x), snapped(v->y), v->inverse_depth, polygon);
   } else {
     ClipVertex corner[3];
-    for (size_t k = 0; k < 3; ++k) corner[k] = project(in.projection, to_double(mesh.positions[c[k]]));
+    project_corners(in, number, corner);
     polygon = clip_and_snap(in.projection, corner);
   }
-  emit(in.projection, grid, mesh, number, polygon, out);
+  emit(in, grid, number, polygon, out);
 }
 
 void take_triangles(const SetupInput& in, const BinGrid& grid, const SetupOutput& output, SetupChunk& out) {
-  out.triangles.assign(output.triangles, output.triangles + output.triangle_count);
-  for (uint32_t place = 0; place < output.triangle_count; ++place) {
-    const SetupTriangle& t = out.triangles[place];
+  const uint32_t first = static_cast<uint32_t>(out.triangles.size());
+  out.triangles.insert(out.triangles.end(), output.triangles, output.triangles + output.triangle_count);
+  for (uint32_t place = first; place < first + output.triangle_count; ++place) {
+    SetupTriangle& t = out.triangles[place];
+    t.triangle += in.first_number;
+    t.object = in.object;
     add_to_bins(grid, intersection(centers_within(t.x, t.y), in.projection.window), place, out.entries);
   }
 }
 
-// Sorts the fragments by tile (counting sort over the tiles that the chunk's fragments lie in).
-void take_fragments(const BinGrid& grid, const SetupOutput& output, SetupChunk& out) {
+// Sorts the fragments by tile (counting sort over the tiles that the range's fragments lie in).
+void take_fragments(const SetupInput& in, const BinGrid& grid, const SetupOutput& output, SetupChunk& out) {
   const uint32_t n = output.fragment_count;
-  out.fragments.resize(n);
   if (n == 0) return;
+  uint32_t first = static_cast<uint32_t>(out.fragments.size());
+  out.fragments.resize(first + n);
   constexpr int32_t shift = std::countr_zero(static_cast<uint32_t>(kTileSide));
   const auto column = [&](uint32_t i) { return (output.x_y[i] & 0xffff) >> shift; };
   const auto row = [&](uint32_t i) { return output.x_y[i] >> (16 + shift); };
@@ -156,7 +164,6 @@ void take_fragments(const BinGrid& grid, const SetupOutput& output, SetupChunk& 
 
   std::vector<uint32_t> next(static_cast<size_t>(across * (tiles.y1 - tiles.y0 + 1)), 0);
   for (uint32_t i = 0; i < n; ++i) ++next[tile(i)];
-  uint32_t first = 0;
   for (size_t t = 0; t < next.size(); ++t) {
     const uint32_t count = next[t];
     next[t] = first;
@@ -166,22 +173,33 @@ void take_fragments(const BinGrid& grid, const SetupOutput& output, SetupChunk& 
     first += count;
   }
   for (uint32_t i = 0; i < n; ++i)
-    out.fragments[next[tile(i)]++] = {output.x_y[i], output.inverse_depth[i], output.triangle[i]};
+    out.fragments[next[tile(i)]++] = {output.x_y[i], output.inverse_depth[i],
+                                      in.first_number + output.triangle[i]};
 }
 
 }  // namespace
 
-void setup_chunk(SetupKernel kernel, const SetupInput& in, const BinGrid& grid, const Mesh& mesh,
+void setup_range(SetupKernel kernel, const SetupInput& in, const BinGrid& grid, uint32_t begin, uint32_t end,
+                 SetupOutput& output, SetupChunk& out) {
+  kernel(in, begin, end, output);
+  take_triangles(in, grid, output, out);
+  take_fragments(in, grid, output, out);
+  for (uint32_t i = 0; i < output.other_count; ++i) setup_other(in, grid, output.others[i], out);
+}
+
+void clear(SetupChunk& chunk) {
+  chunk.triangles.clear();
+  chunk.entries.clear();
+  chunk.fragments.clear();
+  chunk.runs.clear();
+}
+
+void setup_chunk(SetupKernel kernel, const SetupInput& in, const BinGrid& grid, size_t triangles,
                  size_t chunk, SetupChunk& out) {
   const auto output = std::make_unique_for_overwrite<SetupOutput>();
-  const size_t begin = chunk * kChunkTriangles,
-               end = std::min(begin + kChunkTriangles, mesh.triangles.size());
-  kernel(in, static_cast<uint32_t>(begin), static_cast<uint32_t>(end), *output);
-  out.entries.clear();
-  out.runs.clear();
-  take_triangles(in, grid, *output, out);
-  take_fragments(grid, *output, out);
-  for (uint32_t i = 0; i < output->other_count; ++i) setup_other(in, grid, mesh, output->others[i], out);
+  const size_t begin = chunk * kChunkTriangles, end = std::min(begin + kChunkTriangles, triangles);
+  clear(out);
+  setup_range(kernel, in, grid, static_cast<uint32_t>(begin), static_cast<uint32_t>(end), *output, out);
 }
 
 }  // namespace vitral

@@ -40,9 +40,15 @@ static inline size_t chunk_count(size_t triangles) {
   return (triangles + kChunkTriangles - 1) / kChunkTriangles;
 }
 
-// Sets up the triangles [chunk * kChunkTriangles, ...) of the mesh. Those that cannot cover a pixel
-// centre of the window are left out.
-void setup_chunk(SetupKernel kernel, const SetupInput& in, const BinGrid& grid, const Mesh& mesh,
+// Sets up the triangles [begin, end), no more than kChunkTriangles, and appends them. Those that cannot cover
+// a pixel centre of the window are left out. A chunk has room for kChunkTriangles in all. What `output` holds
+// before and after means nothing.
+void setup_range(SetupKernel kernel, const SetupInput& in, const BinGrid& grid, uint32_t begin, uint32_t end,
+                 SetupOutput& output, SetupChunk& out);
+
+// Sets up [chunk * kChunkTriangles, ...) of that many triangles, anew.
+void setup_chunk(SetupKernel kernel, const SetupInput& in, const BinGrid& grid, size_t triangles,
                  size_t chunk, SetupChunk& out);
+void clear(SetupChunk& chunk);
 
 }  // namespace vitral

@@ -82,6 +82,7 @@ void gather_triangles(const Scene& scene, ThreadPool& pool, Accelerator& acceler
       std::any_of(flags.begin(), flags.end(), [](uint32_t f) { return (f & kCutOutTriangle) != 0; });
   gather_mesh(scene.mesh, flags, kNoIndex, pool, accelerator.triangles);
   gather_models(scene, pool, accelerator);
+  gather_drawn_models(scene, pool, accelerator);
   place_objects(scene, 0, accelerator);
   set_views(scene, accelerator);
 }

@@ -5,6 +5,7 @@
 #include "kdtree/object_tree.h"
 #include "kernels/points.h"
 #include "parallel/parallel_for.h"
+#include "raster/drawn.h"
 #include "render/background.h"
 #include "render/material_traits.h"
 #include "render/mip_map.h"
@@ -57,6 +58,7 @@ struct Accelerator {
   Sky sky;
   SurfaceView surfaces;
   PlacedObjects placed;
+  DrawnModels drawn_models;
   std::vector<MipMap> mip_maps;  // of the scene's textures; empty: colours are those without them
 
   Accelerator() = default;
@@ -88,6 +90,9 @@ void gather_mesh(const Mesh& mesh, const std::vector<uint32_t>& flags, uint32_t 
 // The models that objects place; their trees.
 void gather_models(const Scene& scene, ThreadPool& pool, Accelerator& accelerator);
 void build_models(const Executor& executor, Accelerator& accelerator);
+
+// The same models for the rasterizer.
+void gather_drawn_models(const Scene& scene, ThreadPool& pool, Accelerator& accelerator);
 
 // The rule by which a cut-out texture removes parts of a triangle: its finest level, at whatever distance. So
 // all rays and the rasterizer agree on one shape, and as each asks one point of it, a share of them finds it

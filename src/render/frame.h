@@ -113,9 +113,10 @@ void run_shadows(const FrameContext& frame, const Light& light, const PointPacke
 void run_ambient(const FrameContext& frame, const PointPacket* const* points, int count,
                  const AmbientSettings& settings, PassTally& tally, FreeRays* out, LaneWork* work);
 
-// primary.cpp: the scene's triangles on the screen, in bins. Throws Interrupted.
+// primary.cpp: the scene's triangles on the screen, in bins, and its objects. Throws Interrupted.
 struct SetupTimes {
   double transform = 0, setup = 0, bin = 0;  // seconds by the clock, on all threads
+  double fill = 0;                           // only with objects: then tiles are filled here
 };
 RasterView setup_raster(const FrameContext& frame, const Rectangle& crop, ThreadPool& pool,
                         const Control& control, RasterFrame& raster, SetupTimes& times);
@@ -123,10 +124,12 @@ RasterView setup_raster(const FrameContext& frame, const Rectangle& crop, Thread
 // The blocks of a tile so that every four and every sixteen of them make a square.
 inline constexpr int kBlocksInOrder[kTileBlocks] = {0, 1, 4, 5, 2, 3, 6, 7, 8, 9, 12, 13, 10, 11, 14, 15};
 
-// What the camera sees in a tile: the rasterizer's triangles; or the tracer's rays and hits, the i-th block
-// of kBlocksInOrder in entry i.
+// What the camera sees in a tile: the rasterizer's triangles; or rays and hits, the i-th block of
+// kBlocksInOrder in entry i, where that bit of `has_hits` is set: all that are traced, and of rasterized
+// blocks those that see objects.
 struct TileHits {
   TileVisibility visibility;
+  uint32_t has_hits;
   std::array<RayPacket, kTileBlocks> rays;
   std::array<HitPacket, kTileBlocks> hits;
   std::array<LaneWork, kTileBlocks> work;  // of the tracer; only with Count::pixels

@@ -2,12 +2,16 @@
 
 #include "vitral/error.h"
 
+#include <memory>
+
 namespace vitral {
 namespace {
 
 // What a worker keeps to itself; in cache lines of its own.
 struct alignas(64) RasterWorker {
   TileVisibility seen;
+  std::unique_ptr<TileHits> hits;  // only with objects
+  PassTally tally;
   double fill = 0, attributes = 0;  // seconds
 };
 
@@ -33,14 +37,45 @@ uint32_t blocks_inside(const GBuffer& buffer, size_t tile) {
   return inside;
 }
 
-void write_tile(const FrameContext& frame, const RasterView& view, size_t tile, RasterWorker& worker,
-                GBuffer& out) {
+// Writes the blocks of a tile that see objects, a bit each, and returns them.
+uint32_t write_objects(const FrameContext& frame, size_t tile, RasterWorker& worker, GBuffer& out) {
+  const int x = tile_x(out, tile), y = tile_y(out, tile);
+  uint64_t lanes[kTileBlocks];
+  for (size_t i = 0; i < kTileBlocks; ++i) {
+    const int block = kBlocksInOrder[i];
+    lanes[i] = lanes_inside(out.crop, x + block % kTileBlocksAcross * kBlockSide,
+                            y + block / kTileBlocksAcross * kBlockSide);
+  }
+  if (!worker.hits) worker.hits = std::make_unique<TileHits>();
+  TileHits& hits = *worker.hits;
+  find_primary_hits(frame, x, y, lanes, worker.tally, hits);
+  worker.seen = hits.visibility;
+  uint32_t written = 0;
+  for (size_t i = 0; i < kTileBlocks; ++i) {
+    if (!(hits.has_hits >> i & 1)) continue;
+    const int block = kBlocksInOrder[i];
+    SurfacePacket surfaces;
+    see_surfaces(frame, hits, i, x + block % kTileBlocksAcross * kBlockSide,
+                 y + block / kTileBlocksAcross * kBlockSide, surfaces);
+    const size_t place = tile * kTileBlocks + static_cast<size_t>(block);
+    if (out.full.empty()) {
+      frame.kernels.pack_min(surfaces, out.min[place]);
+    } else {
+      frame.kernels.pack_full(surfaces, frame.accelerator.colors.data(), out.full[place]);
+    }
+    written |= 1u << block;
+  }
+  return written;
+}
+
+void write_tile(const FrameContext& frame, size_t tile, RasterWorker& worker, GBuffer& out) {
   const int x = tile_x(out, tile), y = tile_y(out, tile);
   const Clock::time_point start = Clock::now();
-  frame.kernels.fill_tile(view, x / kTileSide, y / kTileSide, worker.seen);
+  if (!frame.raster->drawn) frame.kernels.fill_tile(*frame.raster, x / kTileSide, y / kTileSide, worker.seen);
   const Clock::time_point filled = Clock::now();
   const SurfaceView& scene = frame.accelerator.surfaces;
-  const uint32_t wanted = blocks_inside(out, tile);
+  uint32_t wanted = blocks_inside(out, tile);
+  if (frame.raster->drawn) wanted &= ~write_objects(frame, tile, worker, out);
   const size_t first = tile * kTileBlocks;
   if (out.full.empty()) {
     frame.kernels.write_min(scene, frame.camera, x, y, worker.seen, wanted, &out.min[first]);
@@ -80,12 +115,14 @@ void write_gbuffer(const FrameContext& frame, ThreadPool& pool, const Control& c
                    GBuffer& out, RasterTimes& times) {
   SetupTimes setup;
   const RasterView view = setup_raster(frame, out.crop, pool, control, raster, setup);
+  FrameContext viewed = frame;
+  viewed.raster = &view;
   std::vector<RasterWorker> workers(pool.workers());
   pool.parallel_for(blocks_of(out.tiles) / kTileBlocks, [&](size_t tile, size_t worker) {
     if (control.stop.load(std::memory_order_relaxed)) throw Interrupted();
-    write_tile(frame, view, tile, workers[worker], out);
+    write_tile(viewed, tile, workers[worker], out);
   });
-  times = {setup.transform * 1e3, setup.setup * 1e3, setup.bin * 1e3, 0, 0};
+  times = {setup.transform * 1e3, setup.setup * 1e3, setup.bin * 1e3, setup.fill * 1e3, 0};
   for (const RasterWorker& w : workers) {
     times.fill += w.fill * 1e3 / static_cast<double>(workers.size());
     times.attributes += w.attributes * 1e3 / static_cast<double>(workers.size());

@@ -15,6 +15,15 @@ uint64_t count_of(uint64_t lanes) {
   return static_cast<uint64_t>(__builtin_popcountll(lanes));
 }
 
+// Where traced rays met something: position and geometric normal. Objects say it as all surfaces do.
+void hit_points(const FrameContext& frame, const RayPacket& rays, const HitPacket& hits, SurfacePacket& out) {
+  if (frame.accelerator.placed.view.count > 0) {
+    make_surfaces(frame, rays, hits, out);
+  } else {
+    frame.kernels.surface_points(frame.accelerator.triangles.data(), rays, hits, frame.offset, out.points);
+  }
+}
+
 // Finds what a tile sees; the tile's blocks get position and geometric normal, or all that shading asks for.
 enum class Detail { points, surfaces };
 void see_tile(const Picture& p, Block* blocks, Detail detail, Scratch& s) {
@@ -28,8 +37,7 @@ void see_tile(const Picture& p, Block* blocks, Detail detail, Scratch& s) {
     if (detail == Detail::points && !frame.raster) {
       b.surfaces.points.live = 0;
       if (seen.rays[i].live == 0) continue;
-      frame.kernels.surface_points(frame.accelerator.triangles.data(), seen.rays[i], seen.hits[i],
-                                   frame.offset, b.surfaces.points);
+      hit_points(frame, seen.rays[i], seen.hits[i], b.surfaces);
     } else {
       see_surfaces(frame, seen, i, b.x, b.y, b.surfaces);
     }
@@ -131,20 +139,20 @@ void trace_ambient(const FrameContext& frame, const PointPacket* const* points, 
 
 // One mirrored ray from every point, one shadow ray for every light from where it arrives.
 void trace_mirror(const FrameContext& frame, const PointPacket* const* points, int count, Scratch& s) {
-  std::vector<PointPacket>& seen = s.seen;
+  std::vector<SurfacePacket>& seen = s.seen;
   seen.resize(kTileBlocks);
   const PointPacket* arrived[kTileBlocks];
   int arrivals = 0;
   for (int i = 0; i < count; ++i) {
     RayPacket rays;
     HitPacket hits;
-    PointPacket& here = seen[static_cast<size_t>(i)];
+    SurfacePacket& here = seen[static_cast<size_t>(i)];
     frame.kernels.mirror_rays(*points[i], rays);
-    frame.kernels.trace_closest(frame.accelerator.view, rays, hits);
-    frame.kernels.surface_points(frame.accelerator.triangles.data(), rays, hits, frame.offset, here);
+    run_closest(frame, Pass::reflection, rays, s.tally, hits, nullptr);
+    hit_points(frame, rays, hits, here);
     s.counts.rays += count_of(rays.live);
-    s.counts.hits += count_of(here.live);
-    if (here.live != 0) arrived[arrivals++] = &here;
+    s.counts.hits += count_of(here.points.live);
+    if (here.points.live != 0) arrived[arrivals++] = &here.points;
   }
   for (const Light& light : frame.scene.lights) trace_light(frame, light, arrived, arrivals, s.tally);
 }
@@ -239,6 +247,7 @@ void simplify(Scene& scene, Camera& camera) {
     m.reflectivity = {0, 0, 0};
   }
   scene.mesh.triangle_normals.clear();
+  for (Mesh& model : scene.models) model.triangle_normals.clear();
   for (Light& light : scene.lights) {
     if (light.kind == Light::Kind::sun) light.kind = Light::Kind::directional;
   }

@@ -28,7 +28,7 @@ struct Scratch {
   PathScratch paths;
   std::vector<Vec3> color;
   std::array<Block, kTileBlocks> tile;
-  std::vector<PointPacket> seen;  // in mirrors
+  std::vector<SurfacePacket> seen;  // in mirrors
 };
 
 // The blocks of a tile stand side by side, tiles row by row.

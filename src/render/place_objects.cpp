@@ -117,6 +117,22 @@ void gather_models(const Scene& scene, ThreadPool& pool, Accelerator& a) {
   }
 }
 
+void gather_drawn_models(const Scene& scene, ThreadPool& pool, Accelerator& a) {
+  DrawnModels& drawn = a.drawn_models;
+  drawn.meshes.assign(scene.models.size(), {});
+  drawn.has_cut_outs.clear();
+  std::vector<bool> used(scene.models.size());
+  for (const auto& model : a.placed.models) {
+    used[model->mesh] = true;
+    drawn.has_cut_outs.push_back(
+        std::any_of(model->triangles.begin(), model->triangles.end(),
+                    [](const KdTriangle& t) { return (t.flags & kCutOutTriangle) != 0; }));
+  }
+  pool.parallel_for(used.size(), [&](size_t i, size_t) {
+    if (used[i]) drawn.meshes[i] = cluster_mesh(scene.models[i]);
+  });
+}
+
 void build_models(const Executor& executor, Accelerator& a) {
   PlacedObjects& p = a.placed;
   const BuildSettings settings;

@@ -75,8 +75,7 @@ void render_sample(FrameContext& frame, ThreadPool& pool, Control& control, std:
   const Settings& settings = frame.settings;
   const Rectangle crop = crop_of(settings);
   RasterView raster_view{};
-  // The rasterizer draws the mesh alone.
-  if (settings.primary == Primary::raster && frame.accelerator.placed.view.count == 0) {
+  if (settings.primary == Primary::raster) {
     const PassTimer timer(workers[0].tally, Pass::raster);
     SetupTimes times;
     raster_view = setup_raster(frame, crop, pool, control, raster, times);
