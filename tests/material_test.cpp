@@ -277,6 +277,17 @@ TEST(Absorption, EverySheetAndSolidOnTheWayColoursTheShadow) {
   expect_near(lit_through(scene, sun({0, -1, 0})), expected, 1e-4f);
 }
 
+// What lies within the glass is lit through as much of it as lies above.
+TEST(Absorption, ColoursTheLightOnWhatIsEnclosed) {
+  Scene scene;
+  Material m = glass(Optics::solid);
+  m.absorption = kAbsorption;
+  const uint32_t solid = add_material(scene, m);
+  add_floor(scene, solid, 500, 0);
+  add_ceiling(scene, solid, 500, -3);
+  expect_near(lit_through(scene, sun({0, -1, 0})), left_after(1), 5e-4f);
+}
+
 // Lights in the midst of the glass and above it, whose shadow rays are of any length.
 TEST(Absorption, IsThatOfTheWayToALightThatIsNear) {
   for (const auto& [height, inside] : {std::pair{2.5f, 1.5}, std::pair{4.0f, 2.0}}) {

@@ -234,6 +234,36 @@ TEST(ObjectScenes, TheShadowOfABallIsADisk) {
   EXPECT_GT(dark, 200);
 }
 
+// A light with a size sees objects, too: below a disk that hides all of it nothing arrives, beside it all.
+TEST(ObjectScenes, LightsWithASizeSeeObjects) {
+  Scene scene;
+  add_material(scene, matte({1, 1, 1}));
+  Light lamp;
+  lamp.kind = Light::Kind::sphere, lamp.position = {0, 4, 0}, lamp.radius = 0.5f, lamp.samples = 64;
+  scene.lights = {lamp};
+  scene.objects = {shape_at(Shape::plane, 0, {}), shape_at(Shape::disk, 0, translation({0, 2, 0}))};
+  Settings settings = traced();
+  settings.effects.shadows = true;
+  settings.aovs = {"shadow", "position"};
+  const Frame frame =
+      render_scene(scene, test::camera_at({0, 1.9f, 0}, {0, -1, 0}, 140, {0, 0, -1}), settings);
+  int dark = 0, half = 0, lit = 0;
+  for (size_t i = 0; i < frame.aovs[0].pixels.pixels.size(); ++i) {
+    const Vec3 p = frame.aovs[1].pixels.pixels[i];
+    const double r = std::hypot(static_cast<double>(p.x), static_cast<double>(p.z));
+    const float shadow = frame.aovs[0].pixels.pixels[i].x;
+    // The cones that touch lamp and disk: from an edge of the lamp over the disk's to the floor.
+    dark += r<1.3, lit += r> 2.75;
+    if (r < 1.3 || r > 2.75) {
+      EXPECT_EQ(shadow, r < 1.3 ? 0 : 1) << r;
+    }
+    half += shadow > 0 && shadow < 1;
+  }
+  EXPECT_GT(dark, 50);
+  EXPECT_GT(lit, 200);
+  EXPECT_GT(half, 50);
+}
+
 // Under a ceiling at height h, rays of length d are blocked where their cosine is above h / d: 1 - (h / d)^2
 // of a cosine-weighted hemisphere.
 TEST(ObjectScenes, AmbientRaysUnderACeiling) {
@@ -426,6 +456,34 @@ TEST(ObjectScenes, PlacedGlassTintsShadows) {
   EXPECT_NEAR(seen().y, tint.y, 1e-6);
   scene.objects[1] = model_at(0, translation({0, 2, 0}));
   EXPECT_EQ(seen(), (Vec3{0, 0, 0})) << "its own material is opaque";
+}
+
+// Light through placed, mirrored and exact glass that absorbs: the way inside, by Beer and Lambert.
+TEST(ObjectScenes, PlacedGlassAbsorbs) {
+  Scene scene;
+  Material glass = glass_of(1);
+  glass.absorption = {0.5f, 1, 2};
+  const uint32_t floor = add_material(scene, matte({1, 1, 1})), g = add_material(scene, glass);
+  Mesh ball;
+  add_smooth(ball, g, sphere({0, 0, 0}, 1, 64), {0, 0, 0});
+  scene.models = {ball};
+  scene.lights = {sun({0, -1, 0})};
+  scene.ambient = {0, 0, 0};
+  Settings settings = traced(8, 8);
+  settings.effects.shadows = true;
+  const Camera camera = test::camera_at({0, 0.5f, 0}, {0, -1, 0}, 1, {0, 0, -1});
+  for (const Affine& placement :
+       {scaling(0.5f, 0.5f, 0.5f), scaling(-0.5f, 0.5f, 0.5f), scaling(3, 0.5f, 3)}) {
+    for (const bool mesh : {false, true}) {
+      const Affine up = translation({0, 3, 0}) * placement;
+      scene.objects = {shape_at(Shape::plane, floor, {}),
+                       mesh ? model_at(0, up) : shape_at(Shape::sphere, g, up)};
+      const Vec3 seen = pixel(render_scene(scene, camera, settings), 4, 4);
+      EXPECT_NEAR(seen.x, std::exp(-0.5f), 1e-3f) << mesh;
+      EXPECT_NEAR(seen.y, std::exp(-1.0f), 1e-3f) << mesh;
+      EXPECT_NEAR(seen.z, std::exp(-2.0f), 1e-3f) << mesh;
+    }
+  }
 }
 
 // Holes: a shape's texture cuts both its sides; an instance with a material of its own asks its texture.

@@ -185,7 +185,7 @@ TEST(RayOffset, NeighboursThatDoNotHideTheLightAreNotMet) {
   }
 }
 
-// The corners of a model's triangle, taken to the world in float, and a ray from there, taken back: the plane
+// The corners of a model's triangle, taken to the world, and a ray from there, taken back: the plane
 // that it is tested with is the model's.
 TEST(RayOffset, HoldsForPlacedTrianglesWithTheErrorOfTheirPlacement) {
   Random random(6);
@@ -198,17 +198,21 @@ TEST(RayOffset, HoldsForPlacedTrianglesWithTheErrorOfTheirPlacement) {
     map.x = map.x * random.between(0.1f, 4), map.y = map.y * random.between(0.1f, 4);
     map.z = map.z + map.x * random.between(-1, 1);
     map.origin = random.direction() * (size * std::pow(10.0f, random.between(-1, 3)));
-    const Affine back = inverse(map);
+    const PreciseAffine there = to_double(map), back = precise_inverse(map);
+    const Vec3 own[3] = {corner_of(model, 0), corner_of(model, 1), corner_of(model, 2)};
+    const auto to_world = [&](const Vec3& v) { return to_float(transform_point(there, to_double(v))); };
     std::vector<KdTriangle> proxy;
-    add_triangle(proxy, transform_point(map, corner_of(model, 0)), transform_point(map, corner_of(model, 1)),
-                 transform_point(map, corner_of(model, 2)));
+    add_triangle(proxy, to_world(own[0]), to_world(own[1]), to_world(own[2]));
     const KdTriangle& t = proxy.front();
     const Vec3 n = front_of(t), p = any_point(random, t), d = any_rising(random, n);
     const Vec3 m =
         greatest(absolute(corner_of(t, 0)), greatest(absolute(corner_of(t, 1)), absolute(corner_of(t, 2))));
-    const float more = dot(absolute(n), placement_error(map, back, m));
+    const Vec3 size_there = greatest(absolute(own[0]), greatest(absolute(own[1]), absolute(own[2])));
+    const Vec3 apart = greatest(own[0], greatest(own[1], own[2])) - least(own[0], least(own[1], own[2]));
+    const float more = dot(absolute(n), placement_error(map, size_there, apart, m));
     const auto meets_model = [&](float offset) {
-      return meets(model, transform_point(back, p + n * offset), transform_vector(back, d));
+      return meets(model, to_float(transform_point(back, to_double(p + n * offset))),
+                   to_float(transform_vector(back, to_double(d))));
     };
     hits += meets_model(offset_of(t) + more);
     without += meets_model(offset_of(t));

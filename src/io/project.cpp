@@ -96,9 +96,10 @@ Project read_project(const std::string& path, Warnings& warnings) {
 
 void load_assets(Project& project, const Pipeline& pipeline, Warnings& warnings) {
   for (const MeshFile& mesh : project.meshes) load_mesh(mesh.path, project.scene, warnings);
-  load_objects(project, warnings);
+  load_models(project, warnings);
   const Source source{project.file, warnings};
   apply_materials(project, project.scene, warnings);
+  load_objects(project, warnings);
   load_background(project, project.scene);
   for (const MaterialMap& map : pipeline.maps) apply(map, source, project.scene);
 }

@@ -251,14 +251,18 @@ void resolve_models(Reading& reading) {
   }
 }
 
-void load_objects(Project& project, Warnings& warnings) {
-  if (project.objects.empty()) return;
+void load_models(Project& project, Warnings& warnings) {
   Scene& scene = project.scene;
   for (const ModelFile& model : project.models) {
     Mesh own = std::exchange(scene.mesh, Mesh{});
     load_mesh(model.path, scene, warnings);
     scene.models.push_back(std::exchange(scene.mesh, std::move(own)));
   }
+}
+
+void load_objects(Project& project, Warnings& warnings) {
+  if (project.objects.empty()) return;
+  Scene& scene = project.scene;
   std::vector<MtlMaterial> library;
   std::vector<std::string> paths;
   for (const std::string& path : project.libraries) {

@@ -86,21 +86,21 @@ static inline F ray_offset(const Vec3T<F>& a, const Vec3T<F>& b, const Vec3T<F>&
   return (moved + plane_error(n, d)) * F(kSecondOrder);
 }
 
-// How far the plane of a triangle with world-space corners of size `m`, axis by axis, may be from that of
-// the triangle it stands for, with rays tested in the latter's own space. `map` and `inverse` are as
-// vitral/affine.h has them, applied in float; the entries of the inverse are rounded. Of the sum of all
-// absolute terms, there and back again, the corners are off by 4 e, the ray's origin by 5 e, and its way,
-// which may be 2 m long, by 4 e twice.
-template <class F, class Map>
-static inline Vec3T<F> placement_error(const Map& map, const Map& inverse, const Vec3T<F>& m) {
-  const auto sum_of = [](const Map& a, const Vec3T<F>& p) -> Vec3T<F> {
-    const auto row = [&](float x, float y, float z, float origin) {
-      return ((F(absolute(x)) * p.x + F(absolute(y)) * p.y) + F(absolute(z)) * p.z) + F(absolute(origin));
-    };
-    return {row(a.x.x, a.y.x, a.z.x, a.origin.x), row(a.x.y, a.y.y, a.z.y, a.origin.y),
-            row(a.x.z, a.y.z, a.z.z, a.origin.z)};
+// How far the plane of a triangle that `map` has moved to the world may be from that of the triangle it
+// stands for, with rays tested in the latter's own space. There its corners are at most `m` large and `d`
+// apart, axis by axis; the moved ones are at most `moved` large. Points and rays change spaces in double and
+// are rounded once (kdtree/objects.h): the corners by e of their size in the world; a ray's origin, beside
+// the triangle, by e m, its direction over a way of d by e d; step 3 adds e (2 d + 3 d_z) in that space.
+template <class Map>
+static inline Vec3 placement_error(const Map& map, const Vec3& m, const Vec3& d, const Vec3& moved) {
+  const float most = 3 * greatest(d.x, greatest(d.y, d.z));
+  const Vec3 own = m + d * 3.0f + Vec3{most, most, most};
+  const auto row = [&](float x, float y, float z) {
+    return (absolute(x) * own.x + absolute(y) * own.y) + absolute(z) * own.z;
   };
-  return sum_of(map, sum_of(inverse, m)) * F(17 * kUnitRoundoff);
+  const Vec3 there{row(map.x.x, map.y.x, map.z.x), row(map.x.y, map.y.y, map.z.y),
+                   row(map.x.z, map.y.z, map.z.z)};
+  return (there + moved) * (kUnitRoundoff * kSecondOrder);
 }
 
 }  // namespace vitral

@@ -2,7 +2,6 @@
 
 #include "kdtree/shapes.h"
 #include "kernels/ray_offset.h"
-#include "kernels/shading.h"
 #include "math/footprint.h"
 #include "render/frame.h"
 
@@ -54,29 +53,35 @@ bool is_identity(const Affine& a) {
   return a.x == id.x && a.y == id.y && a.z == id.z && a.origin == id.origin;
 }
 
-// How far the lane's triangle may be from what the rays meet, axis by axis.
-Vec3 error_of(const PlacedObject& object, int lane, const HitTriangles& out) {
-  Vec3 m{0, 0, 0};
-  for (int k = 0; k < 3; ++k) m = greatest(m, absolute(corner(out, lane, k)));
-  const PreciseAffine& i = object.to_object;
-  const Affine inverse{to_float(i.x), to_float(i.y), to_float(i.z), to_float(i.origin)};
-  return placement_error(object.to_world, inverse, m);
+// The corners in one space and in the other.
+struct MovedCorners {
+  Vec3 own[3], moved[3];
+};
+float more_offset(const Affine& map, const MovedCorners& c) {
+  const auto largest = [](const Vec3* p) {
+    return greatest(absolute(p[0]), greatest(absolute(p[1]), absolute(p[2])));
+  };
+  const Vec3* o = c.own;
+  const Vec3 apart = greatest(o[0], greatest(o[1], o[2])) - least(o[0], least(o[1], o[2]));
+  const Vec3d a = to_double(c.moved[0]);
+  const Vec3d normal = normalize(cross(to_double(c.moved[1]) - a, to_double(c.moved[2]) - a));
+  return dot(absolute(to_float(normal)), placement_error(map, largest(o), apart, largest(c.moved)));
 }
 
 void place_triangle(const PlacedObject& object, int lane, HitTriangles& out) {
   // An identity must not cost the normals a rounding.
   if (is_identity(object.to_world)) return;
   const PreciseAffine to_world = to_double(object.to_world);
+  MovedCorners c;
   for (int k = 0; k < 3; ++k) {
-    const Vec3 p = corner(out, lane, k);
-    const Vec3 there = to_float(transform_point(to_world, to_double(p)));
-    set_corner(out, lane, k, there);
+    c.own[k] = corner(out, lane, k);
+    c.moved[k] = to_float(transform_point(to_world, to_double(c.own[k])));
+    set_corner(out, lane, k, c.moved[k]);
     Vec3& n = out.normals[3 * lane + k];
     if (out.normal_indices[3 * lane] != kNoIndex)
       n = to_float(normalize(transform_normal(object.to_object, to_double(n))));
   }
-  const Vec3 n = facet_normal(corner(out, lane, 0), corner(out, lane, 1), corner(out, lane, 2));
-  out.more_offset[lane] = dot(absolute(n), error_of(object, lane, out));
+  out.more_offset[lane] = more_offset(object.to_world, c);
   if (object.mirrored) swap_corners(lane, out);
 }
 
@@ -119,10 +124,15 @@ void place_shape(const PlacedObject& object, const Ray& ray, float t, int lane, 
   out.materials[lane] = object.material;
   out.triangles[lane].flags = object.flags;
   out.hits.u[lane] = out.hits.v[lane] = 0;
-  // The ray goes to the shape in double, and a root is taken there.
-  constexpr float kDoubleRoundoff = 0x1p-53f / kUnitRoundoff, kRoot = 8;
+  // The ray goes to the shape, and its root is taken, in double: what float is to a placed triangle, by the
+  // unit roundoff of double and ten roundings for one.
+  constexpr float kDoubleRoundoff = 10 * 0x1p-53f / kUnitRoundoff;
+  const Vec3 own = absolute(to_float(point.position));
   out.more_offset[lane] =
-      dot(absolute(out.normals[3 * lane]), error_of(object, lane, out)) * (kDoubleRoundoff * kRoot);
+      dot(absolute(to_float(normal)),
+          placement_error(object.to_world, own, own,
+                          absolute(to_float(position)) + absolute(object.to_world.origin))) *
+      kDoubleRoundoff;
   if (object.mirrored) swap_corners(lane, out);
 }
 
@@ -155,27 +165,6 @@ void gather_hits(const FrameContext& frame, const RayPacket& rays, const HitPack
     if (object.material != kNoIndex) out.materials[lane] = object.material;
     place_triangle(object, lane, out);
   }
-}
-
-bool sees_back(const FrameContext& frame, const Ray& ray, const Hit& hit) {
-  const Accelerator& a = frame.accelerator;
-  const auto behind = [&](const KdTriangle& t, const Vec3& direction) {
-    const auto side = [&t](int k) {
-      return Vec3{t.corner[k][0] - t.corner[0][0], t.corner[k][1] - t.corner[0][1],
-                  t.corner[k][2] - t.corner[0][2]};
-    };
-    return dot(cross(side(1), side(2)), direction) > 0;
-  };
-  if (!is_object(a.placed.view, hit.triangle)) return behind(a.triangles[hit.triangle], ray.direction);
-  const PlacedObject& object = a.placed.view.objects[object_of(a.placed.view, hit.triangle)];
-  const ObjectRay<double> there = ray_to_object(object, ray.origin, ray.direction);
-  if (object.shape == Shape::mesh) {
-    const PlacedModel& model = *a.placed.models[object.model];
-    return behind(model.triangles[hit.triangle - object.first_number], to_float(there.direction));
-  }
-  const LineSpan<double> span = shape_span(object.shape, there.origin, there.direction);
-  const ShapePoint point = shape_point(object.shape, there.origin, there.direction, exact_end(span, hit.t));
-  return dot(point.normal, there.direction) > 0;
 }
 
 SurfaceView view_of(const FrameContext& frame, const HitTriangles& hits) {

@@ -18,16 +18,13 @@ struct HitTriangles {
   uint32_t normal_indices[3 * kPacketSize];
   uint32_t materials[kPacketSize];
   CornerTexcoords texcoords[kPacketSize];
-  float more_offset[kPacketSize];  // kernels/ray_offset.h
+  float more_offset[kPacketSize];  // as SurfaceView has it
   HitPacket hits;                  // `triangle` is the lane
 };
 
 // Of the live rays that hit something.
 void gather_hits(const FrameContext& frame, const RayPacket& rays, const HitPacket& hits, HitTriangles& out);
 SurfaceView view_of(const FrameContext& frame, const HitTriangles& hits);
-
-// Whether a ray meets its hit from behind: it leaves a solid there.
-bool sees_back(const FrameContext& frame, const Ray& ray, const Hit& hit);
 
 // How fast the shading normal turns along the surface, 1/radius: half the divergence of the corners' normals
 // over the triangle; greater than 0 where the side that is seen, that of `shading`, bulges out.

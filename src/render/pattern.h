@@ -25,10 +25,10 @@ struct PatternPlace {
 //   brick    courses of `height`, bricks of `size`, every other course moved by half of one. They stand on
 //            walls: of the three axes the one nearest to the normal is left out, and of the two others the
 //            courses follow y, or on floors z
-//   marble   veins cos^8 (pi w) of `second`, for w = x / size + turbulence * T and T the sum over the octaves
-//   i of
-//            2^-i |noise(2^i p / size)|, p turned (Perlin, "An Image Synthesizer", SIGGRAPH 1985). Octaves
-//            finer than what is seen are their mean, and veins fade by how much w varies within what is seen
+//   marble   veins cos^8 (pi w) of `second`, for w = x / size + turbulence * T and T the sum over the
+//            octaves i of 2^-i |noise(2^i p / size)|, p turned (Perlin, "An Image Synthesizer",
+//            SIGGRAPH 1985). Octaves finer than what is seen are their mean, and veins fade by how much w
+//            varies within it
 Vec3 pattern_color(const Pattern& pattern, const PatternPlace& place);
 
 }  // namespace vitral

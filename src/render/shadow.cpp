@@ -1,7 +1,7 @@
 // Shadows: one any-hit ray per light for a point that faces it. Opaque surfaces block; glass tints.
+#include "kdtree/shapes.h"
 #include "math/absorption.h"
 #include "render/frame.h"
-#include "render/hit_triangles.h"
 
 namespace vitral {
 namespace {
@@ -24,6 +24,28 @@ Hit nearest_glass(const FrameContext& frame, const Ray& ray, TraversalCounts& co
 Vec3 tint_of(const Material& m) {
   const Vec3 tint = m.optics == Optics::dissolve ? Vec3{1, 1, 1} * (1 - m.opacity) : m.transmission;
   return tint * (Vec3{1, 1, 1} - m.reflectivity);
+}
+
+bool sees_back(const KdTriangle& t, const Vec3& direction) {
+  const auto at = [&t](int k) { return Vec3{t.corner[k][0], t.corner[k][1], t.corner[k][2]}; };
+  return dot(cross(at(1) - at(0), at(2) - at(0)), direction) > 0;
+}
+
+// Whether a ray runs out at its hit; of an object in the object's own space, where fronts are fronts however
+// it is mirrored.
+Side side_of(const Accelerator& a, const Ray& ray, const Hit& hit) {
+  const auto side = [](bool back) { return back ? Side::back : Side::front; };
+  const ObjectsView& view = a.placed.view;
+  if (!is_object(view, hit.triangle)) return side(sees_back(a.triangles[hit.triangle], ray.direction));
+  const PlacedObject& object = view.objects[object_of(view, hit.triangle)];
+  const ObjectRay<double> there = ray_to_object(object, ray.origin, ray.direction);
+  if (object.shape == Shape::mesh) {
+    const KdTriangle& own = view.models[object.model].tree.triangles[hit.triangle - object.first_number];
+    return side(sees_back(own, to_float(there.direction)));
+  }
+  const LineSpan<double> span = shape_span(object.shape, there.origin, there.direction);
+  const ShapePoint point = shape_point(object.shape, there.origin, there.direction, exact_end(span, hit.t));
+  return side(dot(point.normal, there.direction) > 0);
 }
 
 // The absorbing glass that a ray runs through since `since`.
@@ -60,11 +82,15 @@ Vec3 glass_tint(const FrameContext& frame, Ray ray, TraversalCounts& counts) {
         frame.scene.materials[material_of(frame.scene, frame.accelerator.placed, hit.triangle)];
     tint *= tint_of(m);
     if (absorbs && m.optics == Optics::solid)
-      cross_surface(m, sees_back(frame, ray, hit) ? Side::back : Side::front, hit.t, unit, inside, tint);
+      cross_surface(m, side_of(frame.accelerator, ray, hit), hit.t, unit, inside, tint);
     if (!(luminance(tint) > 0)) return {0, 0, 0};
     ray.tmin = hit.t;
   }
 }
+
+// A lifted point is rounded once more, at the size of its coordinates: a third of what its triangle's offset
+// holds ready for that (kernels/ray_offset.h, steps 1 and 2).
+constexpr float kLiftedOffset = 4.0f / 3;
 
 // All or nothing, as it is without glass.
 void set_visibility(const ShadowAnswer& answer, ColorPacket& visibility) {
@@ -72,9 +98,6 @@ void set_visibility(const ShadowAnswer& answer, ColorPacket& visibility) {
   for (uint64_t left = answer.blocked; left != 0; left &= left - 1)
     visibility.color[__builtin_ctzll(left)] = {0, 0, 0};
 }
-// A lifted point is rounded once more, at the size of its coordinates: a third of what its triangle's offset
-// holds ready for that (kernels/ray_offset.h, steps 1 and 2).
-constexpr float kLiftedOffset = 4.0f / 3;
 
 }  // namespace
 
