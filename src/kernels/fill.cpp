@@ -28,8 +28,7 @@ namespace {
 // A triangle in the tile: how its edge functions and its inverse depth grow over the pixels of a cell.
 struct Filling {
   const SetupTriangle* triangle;
-  const CutOuts* cut_outs;     // null for a triangle without holes
-  const PlacedObject* object;  // that it belongs to; null: the scene's own
+  const CutOuts* cut_outs;  // null for a triangle without holes
   int32_t least_growth[3], greatest_growth[3];
   Int edge[3][kCellRegisters];
   Float across[kCellRegisters], down[kCellRegisters];
@@ -43,24 +42,26 @@ struct Window {
   alignas(64) float at_corner[16], least[16], greatest[16];
 };
 
-// The rule for the holes of a triangle; null where it has none.
-inline const CutOuts* cut_outs_of(const RasterView& view, const SetupTriangle& t,
-                                  const PlacedObject* object) {
-  if (object != nullptr) {
-    const KdView& model = view.placed->models[object->model].tree;
-    const bool is_cut_out = (model.triangles[t.triangle - object->first_number].flags & kCutOutTriangle) != 0;
-    return is_cut_out ? &model.cut_outs : nullptr;
-  }
-  const bool is_cut_out =
-      view.cut_outs != nullptr && (view.triangles[t.triangle].flags & kCutOutTriangle) != 0;
-  return is_cut_out ? view.cut_outs : nullptr;
+// The object that a triangle belongs to; null: it is the scene's own.
+inline const PlacedObject* object_of(const RasterView& view, const SetupTriangle& t) {
+  return view.placed != nullptr ? view.placed->objects + t.object : nullptr;
+}
+
+// The rule for the holes of an object's triangle; null where it has none.
+[[gnu::noinline]] const CutOuts* placed_cut_outs(const RasterView& view, const SetupTriangle& t) {
+  const PlacedObject& object = *object_of(view, t);
+  const KdView& model = view.placed->models[object.model].tree;
+  const bool is_cut_out = (model.triangles[t.triangle - object.first_number].flags & kCutOutTriangle) != 0;
+  return is_cut_out ? &model.cut_outs : nullptr;
 }
 
 Filling make_filling(const RasterView& view, const SetupTriangle& t) {
   Filling f;
   f.triangle = &t;
-  f.object = view.placed != nullptr ? view.placed->objects + t.object : nullptr;
-  f.cut_outs = cut_outs_of(view, t, f.object);
+  const bool is_cut_out =
+      view.cut_outs != nullptr && (view.triangles[t.triangle].flags & kCutOutTriangle) != 0;
+  f.cut_outs = is_cut_out ? view.cut_outs : nullptr;
+  if (view.placed != nullptr) f.cut_outs = placed_cut_outs(view, t);
   constexpr int32_t far_side = kCellSide - 1;
   for (int k = 0; k < 3; ++k) {
     const int next = k == 2 ? 0 : k + 1;
@@ -127,10 +128,11 @@ CellMasks classify(const Filling& f, const int32_t at_corner[3], int x, int y, W
 // Clears the pixels where a cut-out triangle is not there; the cell's corner is (x, y).
 [[gnu::noinline]] uint32_t keep_there(const RasterView& view, const Filling& f, int x, int y, int first,
                                       uint32_t pixels) {
-  const Eye eye = eye_of(*view.camera, f.object);
-  const uint32_t number = f.triangle->triangle - (f.object != nullptr ? f.object->first_number : 0);
+  const PlacedObject* object = object_of(view, *f.triangle);
+  const Eye eye = eye_of(*view.camera, object);
+  const uint32_t number = f.triangle->triangle - (object != nullptr ? object->first_number : 0);
   const KdTriangle* triangles =
-      f.object != nullptr ? view.placed->models[f.object->model].tree.triangles : view.triangles;
+      object != nullptr ? view.placed->models[object->model].tree.triangles : view.triangles;
   const KdTriangle& triangle = triangles[number];
   Vec3T<Float> corner[3];
   for (int k = 0; k < 3; ++k) corner[k] = broadcast(corner_from(eye.origin, triangle, k));
@@ -201,7 +203,7 @@ inline bool is_hidden(const SetupTriangle& t, const Tile& tile) {
   return t.least < tile.least_of_all && nearest + terms * margin < static_cast<double>(tile.least_of_all);
 }
 
-void fill_triangle(const RasterView& view, const SetupTriangle& t, Tile& tile) {
+[[gnu::always_inline]] inline void fill_triangle(const RasterView& view, const SetupTriangle& t, Tile& tile) {
   PixelBox box = centers_within(t.x, t.y);
   box = intersection({box.x0 - tile.x, box.y0 - tile.y, box.x1 - tile.x, box.y1 - tile.y}, tile.window);
   if (vitral::is_empty(box)) return;
@@ -252,7 +254,7 @@ inline const SetupTriangle& setup_triangle(const RasterView& view, SetupReferenc
 }
 
 // The triangles of a bin lie scattered in memory: each is asked for some turns before its own.
-void fill_bin(const RasterView& view, uint32_t bin, Tile& tile) {
+[[gnu::always_inline]] inline void fill_bin(const RasterView& view, uint32_t bin, Tile& tile) {
   constexpr uint64_t ahead = 6;
   const uint64_t first = view.first_reference[bin], end = view.first_reference[bin + 1];
   for (uint64_t i = first; i < first + ahead && i < end; ++i)
@@ -284,7 +286,8 @@ void fill_runs(const RasterView& view, uint32_t bin, TileVisibility& seen) {
 }
 
 // All triangles of the view.
-void fill_all(const RasterView& view, int tile_x, int tile_y, Tile& tile, TileVisibility& out) {
+[[gnu::always_inline]] inline void fill_all(const RasterView& view, int tile_x, int tile_y, Tile& tile,
+                                            TileVisibility& out) {
   for (int level = kBinLevels - 1; level >= 0; --level)
     fill_bin(view, bin_of(view.grid, level, tile_x, tile_y), tile);
   hand_over(tile, out);
