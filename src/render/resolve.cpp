@@ -17,9 +17,10 @@ Rgb8 encode_pixel(Vec3& color, uint64_t& not_finite) {
 }  // namespace
 
 void encode_row(Vec3* colors, size_t count, Rgb8* pixels, uint64_t& not_finite) {
+  Rgb8 pixel;
   for (size_t i = 0; i < count; ++i) {
-    const bool as_before = i > 0 && colors[i] == colors[i - 1];
-    pixels[i] = as_before ? pixels[i - 1] : encode_pixel(colors[i], not_finite);
+    if (i == 0 || !(colors[i] == colors[i - 1])) pixel = encode_pixel(colors[i], not_finite);
+    pixels[i] = pixel;
   }
 }
 
