@@ -173,5 +173,42 @@ TEST_P(Motion, HasTheExpectationOfTheReference) {
   EXPECT_GT(greatest_z(pictures(GetParam(), 4, 400), reference), critical);
 }
 
+// What is cut from a checkered block keeps its checks wherever it goes: who goes along sees the same.
+TEST_P(Motion, PatternsStayWithWhatMoves) {
+  Scene scene;
+  Material checkered;
+  checkered.pattern.kind = Pattern::Kind::checker;
+  checkered.pattern.size = 0.4f;
+  add_material(scene, checkered);
+  add_triangles(scene, 0, sphere({0.1f, 0.2f, 0.05f}, 0.9f, 12));
+  scene.models = {scene.mesh};
+  scene.mesh = {};
+  scene.ambient = {1, 1, 1};
+  const Vec3 away{0.33f, 0.21f, 0.17f};  // no multiple of the checks
+  Settings settings = tiny(1, GetParam());
+  settings.width = settings.height = 64;
+  Object ball = placed(Shape::sphere, {0.9f, 0.9f, 0.9f}, {0.1f, 0.2f, 0.05f}), model;
+  ball.material = 0;
+  for (const Object& object : {ball, model}) {
+    const auto seen_from = [&](const Object& there, const Vec3& eye) {
+      scene.objects = {there};
+      return render_scene(scene, camera_at(eye, {0, 0, -1}, 50), settings);
+    };
+    const auto different = [](const Frame& a, const Frame& b) {
+      size_t pixels = 0;
+      for (size_t i = 0; i < a.radiance.pixels.size(); ++i)
+        pixels += std::abs(a.radiance.pixels[i].x - b.radiance.pixels[i].x) > 0.05f ? 1 : 0;
+      return pixels;
+    };
+    const Frame at_rest = seen_from(object, {0, 0, 3});
+    Object moved = object;
+    moved.motion = {{0, away, {}}};
+    const Frame together = seen_from(moved, Vec3{0, 0, 3} + away);
+    EXPECT_LT(different(at_rest, together), 40u);  // of 4096: where edges fall on other pixels
+    // Where the pattern did not go along, hundreds would differ.
+    EXPECT_GT(different(at_rest, seen_from(object, Vec3{0.2f, 0.1f, 3})), 400u);
+  }
+}
+
 }  // namespace
 }  // namespace vitral::test

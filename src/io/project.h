@@ -54,8 +54,8 @@
 //       <pipeline name="..." default="true" defaultCamera="...">   one or more
 //         <pass class="raster" name="..."          the targets pos, norm, color (other name: default),
 //               primary="raster|trace"             found by the rasterizer, or by the tracer along such rays
-//               samples="1" filter="box|tent|mitchell"/>   per pixel, 1..65536: over the pixel, lens and
-//               shutter
+//               samples="1"                        per pixel, 1..65536: over the pixel, lens and shutter
+//               filter="box|tent|mitchell"/>       over 1, 2 and 4 pixels
 //         <pass class="trace" name="...">          (other name: optix); empty: a pass-through
 //           <shadows samples="16"                  for all lights with a size; or else their own
 //                    terminator="facet|smooth"/>   where their rays leave meshes with normals: the triangle,
@@ -69,8 +69,9 @@
 // <scale>2</scale> and <matrix>, three rows of four numbers, each applied after the ones before it, about the
 // origin of the world. Besides, <motion> holds in order of time <key time="0">: <translate/> and <rotate/>,
 // which go after them, the rotation about where they put the object's origin; between keys what moves is
-// displaced and turned evenly. The materials of objects have
-// their names from the meshes' own libraries or from a materialLib.
+// displaced and turned evenly. The materials of objects have their names from the meshes' own libraries, from
+// a materialLib, or from <materials>.
+//
 // Rectangle, sphere and sun cast soft shadows: a point sends `samples` rays to each, 1..1024. They are not
 // seen themselves; a surface that shows one may stand where it is. The color is the irradiance at normal
 // incidence, of lights with a position at distance 1: what a point light there would have.

@@ -8,8 +8,8 @@ namespace vitral {
 // the parallelogram around the point that the ray sees of the surface, by its sides. Sides that are not
 // finite, of a surface seen from its edge, stand for all of it.
 //
-// The space is the world's, or that of the object which the surface belongs to: then position and sides are
-// taken there by the inverse of its placement, the normal by its transpose.
+// The space is the world's; of a placed model it is the model's own; of a shape, whose own space has no
+// measure, the world's as the shape was placed before it moved.
 struct PatternPlace {
   Vec3 position;
   Vec3 outward;
