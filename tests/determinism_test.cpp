@@ -79,7 +79,99 @@ Settings settings(Primary primary) {
   return s;
 }
 
+// The room with all that is sampled, placed, moved and patterned as well.
+Scene crowded_room() {
+  Scene scene = room();
+  Material marble;
+  marble.pattern.kind = Pattern::Kind::marble, marble.pattern.size = 0.3f;
+  marble.reflectivity = {0.2f, 0.15f, 0.1f};
+  Material checker;
+  checker.pattern.kind = Pattern::Kind::checker, checker.pattern.size = 0.25f;
+  checker.emission = {0.05f, 0, 0.1f};
+  Material brick;
+  brick.pattern.kind = Pattern::Kind::brick, brick.pattern.size = 0.4f;
+  Material amber;
+  amber.optics = Optics::solid, amber.absorption = {0.3f, 1, 3};
+  const Material materials[] = {marble, checker, brick, amber};
+  uint32_t number[4];
+  for (size_t i = 0; i < 4; ++i) number[i] = add_material(scene, materials[i]);
+
+  Scene ball;
+  add_triangles(ball, 0, sphere({0, 0, 0}, 0.3f, 8));
+  scene.models = {ball.mesh};
+  const auto add = [&](Shape shape, uint32_t material, const Vec3& size, const Vec3& at) -> Object& {
+    Object o;
+    o.shape = shape, o.material = material;
+    o.placement = {{size.x, 0, 0}, {0, size.y, 0}, {0, 0, size.z}, at};
+    scene.objects.push_back(o);
+    return scene.objects.back();
+  };
+  add(Shape::plane, number[2], {1, 1, 1}, {0, -1.1f, 0});
+  add(Shape::sphere, number[3], {0.4f, 0.5f, 0.4f}, {0, 0.2f, 1.5f});
+  add(Shape::box, number[1], {0.3f, 0.2f, 0.3f}, {1.8f, -0.8f, 1}).motion = {
+      {0, {0, 0, 0}, {}}, {1, {0.1f, 0.5f, 0}, quaternion({1, 1, 0}, 50)}};
+  add(Shape::cylinder, number[0], {0.2f, 0.6f, 0.2f}, {-1.8f, -0.3f, 1.2f});
+  add(Shape::disk, number[0], {0.5f, 0.5f, 0.5f}, {0, 1.5f, -1});
+  for (int i = 0; i < 9; ++i)
+    add(Shape::mesh, i % 2 ? kNoIndex : number[static_cast<size_t>(i) % 4], {i % 3 ? 1.0f : -0.7f, 1, 1},
+        {static_cast<float>(i % 3) - 1, 1.2f, static_cast<float>(i / 3) - 1.5f});
+
+  Light lamp;
+  lamp.kind = Light::Kind::rectangle, lamp.position = {0, 2.5f, 1}, lamp.color = {2, 2, 2};
+  lamp.samples = 3;
+  scene.lights.push_back(lamp);
+  lamp.kind = Light::Kind::sphere, lamp.position = {2, 1.5f, 2}, lamp.radius = 0.3f;
+  scene.lights.push_back(lamp);
+  lamp.kind = Light::Kind::spot, lamp.position = {-2, 2, 3},
+  lamp.direction = normalize(Vec3{0.5f, -0.6f, -1});
+  scene.lights.push_back(lamp);
+  lamp.kind = Light::Kind::sun, lamp.diameter_degrees = 5, lamp.color = {0.3f, 0.3f, 0.2f};
+  scene.lights.push_back(lamp);
+  scene.background.kind = Background::Kind::gradient;
+  scene.background.zenith = {0.1f, 0.2f, 0.6f};
+  return scene;
+}
+
+Camera moving_camera() {
+  Camera camera = kCamera;
+  camera.aperture = 0.1f, camera.focus = 4, camera.shutter_close = 1;
+  camera.motion = {{0, camera.position, camera.view, camera.up},
+                   {1, camera.position + Vec3{0.05f, 0, 0}, camera.view, {0.03f, 1, 0}}};
+  return camera;
+}
+
+Settings sampled(Primary primary) {
+  Settings s = settings(primary);
+  s.width = 70, s.height = 50;
+  s.samples = 3, s.filter = Filter::mitchell, s.terminator = Terminator::smooth;
+  s.ao_samples = 4, s.max_depth = 8;
+  return s;
+}
+
 class Determinism : public testing::TestWithParam<Primary> {};
+
+TEST_P(Determinism, IsasAndThreadsWithAllThatThereIs) {
+  const Scene scene = crowded_room();
+  Settings s = sampled(GetParam());
+  const Frame expected = render_scene(scene, moving_camera(), s);
+  EXPECT_EQ(expected.stats.not_finite_pixels, 0u);
+  for (const Isa isa : isas_here()) {
+    for (const int threads : {1, 5}) {
+      s.isa = isa;
+      s.threads = threads;
+      const Frame frame = render_scene(scene, moving_camera(), s);
+      ASSERT_TRUE(same_bytes(expected, frame)) << frame.stats.isa << " with " << threads << " threads";
+    }
+  }
+  s.crop = {21, 9, 33, 37};
+  const Frame part = render_scene(scene, moving_camera(), s);
+  for (int y = 0; y < s.crop.height; ++y) {
+    ASSERT_EQ(std::memcmp(part.radiance.row(y), expected.radiance.row(s.crop.y + y) + s.crop.x,
+                          static_cast<size_t>(s.crop.width) * sizeof(Vec3)),
+              0)
+        << "row " << y;
+  }
+}
 
 TEST_P(Determinism, IsasAndThreads) {
   const Scene scene = room();

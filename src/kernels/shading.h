@@ -94,7 +94,7 @@ static inline Vec3T<F> lifted_position(const Facet<F, M>& f, const Vec3T<F>& p, 
     const Vec3T<F> n = flip_where(turned, f.corner_normal[k]);
     const F below = greatest(-dot(from_corner[k], n), zero);
     const auto upwards = both(s.usable, dot(n, geometric) > zero);
-    lift = lift + n * select(upwards, below * weight[k], zero);
+    lift = lift + select3(upwards, n * (below * weight[k]), Vec3T<F>{zero, zero, zero});
   }
   return p + lift;
 }
