@@ -7,28 +7,33 @@
 namespace vitral {
 
 // p -> x * p.x + y * p.y + z * p.z + origin: the images of the axes and of the origin.
-struct Affine {
-  Vec3 x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
-  Vec3 origin{0, 0, 0};
+template <class V>
+struct AffineT {
+  V x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
+  V origin{0, 0, 0};
 };
+using Affine = AffineT<Vec3>;
+// The same in double. An inverse that were rounded to float would take the points of a squashed, turned body
+// off its surface by as many times rounding as its length is larger than its width.
+using PreciseAffine = AffineT<Vec3d>;
 
 // Generic in width. The order of the sums is part of the contract: the rasterizer and the tracer take the
 // same rays to the same objects, and must come to the same bits.
-template <class F>
-static inline Vec3T<F> transform_vector(const Affine& a, const Vec3T<F>& v) {
+template <class V, class F>
+static inline Vec3T<F> transform_vector(const AffineT<V>& a, const Vec3T<F>& v) {
   return {(F(a.x.x) * v.x + F(a.y.x) * v.y) + F(a.z.x) * v.z,
           (F(a.x.y) * v.x + F(a.y.y) * v.y) + F(a.z.y) * v.z,
           (F(a.x.z) * v.x + F(a.y.z) * v.y) + F(a.z.z) * v.z};
 }
-template <class F>
-static inline Vec3T<F> transform_point(const Affine& a, const Vec3T<F>& p) {
+template <class V, class F>
+static inline Vec3T<F> transform_point(const AffineT<V>& a, const Vec3T<F>& p) {
   return transform_vector(a, p) + Vec3T<F>{F(a.origin.x), F(a.origin.y), F(a.origin.z)};
 }
 
 // The normal of a transformed surface is along this, for `inverse` the inverse of the map that transforms it:
 // the transpose of the inverse keeps normals upright on sheared and squashed surfaces.
-template <class F>
-static inline Vec3T<F> transform_normal(const Affine& inverse, const Vec3T<F>& n) {
+template <class V, class F>
+static inline Vec3T<F> transform_normal(const AffineT<V>& inverse, const Vec3T<F>& n) {
   return {(F(inverse.x.x) * n.x + F(inverse.x.y) * n.y) + F(inverse.x.z) * n.z,
           (F(inverse.y.x) * n.x + F(inverse.y.y) * n.y) + F(inverse.y.z) * n.z,
           (F(inverse.z.x) * n.x + F(inverse.z.y) * n.y) + F(inverse.z.z) * n.z};
@@ -37,31 +42,9 @@ static inline Vec3T<F> transform_normal(const Affine& inverse, const Vec3T<F>& n
 // First b, then a. Computed in double, rounded once.
 Affine operator*(const Affine& a, const Affine& b);
 
-// The same map in double. An inverse that were rounded to float would take the points of a squashed, turned
-// body off its surface by as many times rounding as its length is larger than its width.
-struct PreciseAffine {
-  Vec3d x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
-  Vec3d origin{0, 0, 0};
-};
 PreciseAffine to_double(const Affine& a);
 PreciseAffine precise_inverse(const Affine& a);  // as inverse()
 
-template <class D>
-static inline Vec3T<D> transform_vector(const PreciseAffine& a, const Vec3T<D>& v) {
-  return {(D(a.x.x) * v.x + D(a.y.x) * v.y) + D(a.z.x) * v.z,
-          (D(a.x.y) * v.x + D(a.y.y) * v.y) + D(a.z.y) * v.z,
-          (D(a.x.z) * v.x + D(a.y.z) * v.y) + D(a.z.z) * v.z};
-}
-template <class D>
-static inline Vec3T<D> transform_point(const PreciseAffine& a, const Vec3T<D>& p) {
-  return transform_vector(a, p) + Vec3T<D>{D(a.origin.x), D(a.origin.y), D(a.origin.z)};
-}
-template <class D>
-static inline Vec3T<D> transform_normal(const PreciseAffine& inverse, const Vec3T<D>& n) {
-  return {(D(inverse.x.x) * n.x + D(inverse.x.y) * n.y) + D(inverse.x.z) * n.z,
-          (D(inverse.y.x) * n.x + D(inverse.y.y) * n.y) + D(inverse.y.z) * n.z,
-          (D(inverse.z.x) * n.x + D(inverse.z.y) * n.y) + D(inverse.z.z) * n.z};
-}
 // Greater than 0: left stays left. Less: mirrored.
 double determinant(const Affine& a);
 
