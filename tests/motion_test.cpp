@@ -13,14 +13,9 @@ constexpr double kPi = 3.14159265358979323846;
 
 // One white object before black: a picture of it shows for how long each pixel sees it.
 Scene white_object(const Object& object) {
-  Scene scene;
-  Material m;
-  m.diffuse = {1, 1, 1};
-  Object white = object;
-  white.material = add_material(scene, m);
-  scene.objects = {white};
-  scene.ambient = {1, 1, 1};
-  scene.background.color = {0, 0, 0};
+  Scene scene = white_scene();
+  scene.objects = {object};
+  scene.objects[0].material = 0;
   return scene;
 }
 
@@ -82,12 +77,7 @@ TEST_P(Motion, ASlidingPlateIsSeenForItsShareOfTheTime) {
 // A plate that turns about its own origin, in its edge's middle, by a quarter: what lies at the angle a from
 // where the edge starts is seen until the edge has passed, or from then on.
 TEST_P(Motion, ATurningPlateIsSeenUntilItsEdgeHasPassed) {
-  Scene scene;
-  Material m;
-  m.diffuse = {1, 1, 1};
-  add_material(scene, m);
-  scene.ambient = {1, 1, 1};
-  scene.background.color = {0, 0, 0};
+  Scene scene = white_scene();
   add_quad(scene, 0, {0, -9, 0}, {9, 0, 0}, {0, 18, 0});  // all that is right of its origin
   scene.models = {scene.mesh};
   scene.mesh = {};

@@ -128,6 +128,18 @@ inline void add_triangles(Scene& scene, uint32_t material, const std::vector<KdT
   }
 }
 
+// White, lit by nothing but the ambient light, before black: a picture of it shows how much of it each pixel
+// sees.
+inline Scene white_scene() {
+  Scene scene;
+  Material m;
+  m.diffuse = {1, 1, 1};
+  add_material(scene, m);
+  scene.ambient = {1, 1, 1};
+  scene.background.color = {0, 0, 0};
+  return scene;
+}
+
 inline Light sun(const Vec3& direction, const Vec3& color = {1, 1, 1}) {
   Light light;
   light.direction = normalize(direction);

@@ -4,6 +4,7 @@
 #include "app/richness.h"
 #include "io/mesh_file.h"
 #include "io/text.h"
+#include "io/values.h"
 #include "render/kernel_choice.h"
 #include "render/tile.h"
 
@@ -46,11 +47,6 @@ const Named& find(const std::vector<Named>& things, const std::string& name, con
     if (thing.name == name) return thing;
   }
   throw UsageError(file + " has no " + what + " '" + name + "'; " + listed(things));
-}
-
-template <class T>
-void override_with(const std::optional<T>& given, T& value) {
-  if (given) value = *given;
 }
 
 void override_settings(const Options& options, Settings& settings) {

@@ -12,17 +12,9 @@ namespace {
   throw UsageError(std::string(row.name) + " '" + value + "': expected " + expected);
 }
 
-std::string in_words(Range range) {
-  const auto written = [](float number) {
-    char digits[32];
-    return std::string(digits, std::to_chars(digits, digits + sizeof digits, number).ptr);
-  };
-  return "a number from " + written(range.least) + " to " + written(range.most);
-}
-
 float number(const OptionRow& row, const std::string& value, Range range) {
   if (const auto parsed = parse_number(value, range)) return *parsed;
-  reject(row, value, in_words(range));
+  reject(row, value, "a number " + in_words(range));
 }
 
 int integer(const OptionRow& row, const std::string& value, int least, int most) {

@@ -11,15 +11,6 @@ namespace {
 
 constexpr size_t kMostWarnings = 20;
 
-std::string in_words(float number) {
-  char digits[32];
-  return {digits, std::to_chars(digits, digits + sizeof digits, number).ptr};
-}
-
-std::string in_words(Range range) {
-  return "from " + in_words(range.least) + " to " + in_words(range.most);
-}
-
 // Three attributes of the given names, or the attribute `value`, or the text, as one line of numbers.
 std::string numbers_of(const Source& source, const XmlElement& element,
                        const std::array<std::string_view, 3>& components) {

@@ -36,11 +36,6 @@ constexpr NumberFigure kNumberFigures[] = {
     {"opacity", &MaterialFigures::opacity, kTints},
 };
 
-std::string in_words(Range range) {
-  const auto whole = [](float x) { return std::to_string(static_cast<long>(x)); };
-  return whole(range.least) + " to " + whole(range.most);
-}
-
 Optics optics_of(const Source& source, const XmlElement& element, const std::string& kind) {
   constexpr std::pair<const char*, Optics> kKinds[] = {
       {"opaque", Optics::opaque}, {"mirror", Optics::mirror}, {"polished", Optics::polished},
@@ -99,11 +94,6 @@ bool read_figure(const Source& source, const XmlElement& element, MaterialFigure
   return read_pattern(source, element, figures);
 }
 
-template <class T>
-void override_with(const std::optional<T>& given, T& value) {
-  if (given) value = *given;
-}
-
 void apply(const MaterialFigures& f, Material& m) {
   override_with(f.diffuse, m.diffuse);
   override_with(f.specular, m.specular);
@@ -129,7 +119,7 @@ std::optional<Vec3> color_attribute(const Source& source, const XmlElement& elem
   const std::optional<Vec3> color = parse_color(*text, range);
   if (!color) {
     fail(source, element,
-         std::string(name) + "=" + named(*text) + " is not one or three numbers from " + in_words(range));
+         std::string(name) + "=" + named(*text) + " is not one or three numbers " + in_words(range));
   }
   return color;
 }

@@ -78,6 +78,20 @@ std::optional<long> parse_samples(std::string_view text) {
   return {};
 }
 
+std::string in_words(Range range) {
+  const auto written = [](float number) {
+    // A million is easier to read than 1e+06.
+    const bool plain =
+        number >= -1e6f && number <= 1e6f && number == static_cast<float>(static_cast<long>(number));
+    char digits[32];
+    char* const end = digits + sizeof digits;
+    const auto result =
+        plain ? std::to_chars(digits, end, static_cast<long>(number)) : std::to_chars(digits, end, number);
+    return std::string(digits, result.ptr);
+  };
+  return "from " + written(range.least) + " to " + written(range.most);
+}
+
 std::optional<Fresnel> parse_fresnel(std::string_view text) {
   if (text == "exact") return Fresnel::exact;
   if (text == "schlick") return Fresnel::schlick;

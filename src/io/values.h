@@ -5,6 +5,7 @@
 #include "vitral/vec.h"
 
 #include <optional>
+#include <string>
 #include <string_view>
 
 namespace vitral {
@@ -13,6 +14,7 @@ namespace vitral {
 struct Range {
   float least, most;
 };
+std::string in_words(Range range);  // "from 0.01 to 179"
 inline constexpr Range kCoordinates{-1e9f, 1e9f};
 inline constexpr Range kDistances{1e-9f, 1e9f};
 inline constexpr Range kFovDegrees{0.01f, 179};
@@ -40,6 +42,12 @@ std::optional<Vec3> parse_color(std::string_view text, Range range);
 
 // A square number in 1..kMostSamples: the side of the square is the number of strata.
 std::optional<long> parse_samples(std::string_view text);
+
+// Where a value was given it goes before what there is.
+template <class T>
+void override_with(const std::optional<T>& given, T& value) {
+  if (given) value = *given;
+}
 
 std::optional<Fresnel> parse_fresnel(std::string_view text);          // exact, schlick, report
 std::optional<Compositing> parse_compositing(std::string_view text);  // physical, report
